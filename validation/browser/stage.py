@@ -6,9 +6,13 @@
 Status 77 where chromium or chromedriver is not there. Needs nothing but Python.
 """
 
+import base64
+import io
 import pathlib
+import struct
 import subprocess
 import sys
+import tarfile
 import tempfile
 import time
 
@@ -154,6 +158,79 @@ def plane(browser, name):
     expect(before[0] == before[2] > before[1], f"{name}: hidden agents are drawn: {before}")
 
 
+SLIDES = "const seen = " + DRAWN.split("const seen = ")[1].split("const stage")[0] + """
+const stage = document.getElementById("stage"), { talk } = stage;
+const painted = () => new Promise((done) => setTimeout(done, 150));
+stage.go(document.getElementById("slider").max / 3);
+document.getElementById("view-slide").click();
+await painted();
+const slides = [];
+for (const plot of talk.plots()) {
+  talk.choose(plot);
+  await painted();
+  slides.push([plot, ...seen(talk.drawing())]);
+}
+const before = document.getElementById("talk-slide").toDataURL();
+stage.go(document.getElementById("slider").max);
+await painted();
+const after = document.getElementById("talk-slide").toDataURL();
+talk.close();
+return [document.title, slides, before !== after, document.getElementById("talk").open];
+"""
+SAVED = """
+const { talk } = document.getElementById("stage");
+document.getElementById("view-slide").click();
+const blob = await talk[arguments[0]](arguments[1]);
+talk.close();
+const bytes = new Uint8Array(await blob.arrayBuffer());
+let text = "";
+for (let i = 0; i < bytes.length; i += 8192) text += String.fromCharCode(...bytes.subarray(i, i + 8192));
+return btoa(text);
+"""
+PLAYED = """
+const video = document.body.appendChild(document.createElement("video"));
+video.muted = true;
+video.src = "data:video/webm;base64," + arguments[0];
+const happened = (what) => new Promise((done, fail) => (video.addEventListener(what, done, { once: true }), video.addEventListener("error", () => fail(new Error("no film")), { once: true })));
+await happened("loadeddata");
+const canvas = Object.assign(document.createElement("canvas"), { width: video.videoWidth, height: video.videoHeight });
+const ctx = canvas.getContext("2d");
+const look = () => (ctx.drawImage(video, 0, 0), [...ctx.getImageData(0, 0, canvas.width, canvas.height).data]);
+const first = look();
+video.play();
+await happened("ended");
+const last = look();
+return [video.videoWidth, video.videoHeight, video.currentTime, first.reduce((n, byte, i) => n + (Math.abs(byte - last[i]) > 40), 0)];
+"""
+
+
+def waited(browser, script, *arguments):
+    return browser.run(f"return (async () => {{{script}}})()", *arguments)
+
+
+def slides(browser, name):
+    """A page for a talk: with each plot it is a drawing with that plot's curves, and it follows the clock."""
+    title, drawn, moves, still_open = waited(browser, SLIDES)
+    expect(drawn, f"{name}: no plot for a slide")
+    for plot, curves, paths, texts, broken, said in drawn:
+        expect(curves > 0 and paths > curves and texts > 8 and not broken and said.startswith(title), f"{name}: the slide with {plot} has {curves} curves: {broken}, {said}")
+    expect(moves and not still_open, f"{name}: the slide does not follow the clock, or stays open")
+
+
+def film(browser, name, page):
+    """A film that the browser plays, and frames that another program reads."""
+    archive = tarfile.open(fileobj=io.BytesIO(base64.b64decode(waited(browser, SAVED, "pictures", 1))))
+    frames = [archive.extractfile(member).read() for member in archive.getmembers()]
+    sizes = {struct.unpack(">II", frame[16:24]) for frame in frames if frame[:8] == b"\x89PNG\r\n\x1a\n"}
+    expect(len(frames) == 11 and sizes == {(1280, 720)} and frames[0] != frames[-1], f"{name}: {len(frames)} frames of {sizes}")
+    taken = waited(browser, SAVED, "film", 1.5)
+    empty = page.with_name("empty.html")
+    empty.write_text("<!DOCTYPE html><title>A film</title>")
+    browser.open(empty)
+    width, height, length, changed = waited(browser, PLAYED, taken)
+    expect((width, height) == (1280, 720) and 1.2 < length < 6 and changed > 1000, f"{name}: a film of {width} by {height}, {length} s, {changed} bytes change")
+
+
 def tips(browser, name):
     """What is drawn beside what the run recorded of the tip, at every row."""
     rows, worst = int(value(browser, "s.times().length")), 0.0
@@ -215,6 +292,7 @@ def main():
                         clock(browser, about)
                         drawings(browser, about)
                         plane(browser, about)
+                        slides(browser, about)
                     quiet(browser, about)
                     fits(browser, about, 1400)
             browser.screen(390, 844, touch=True, calm=True)
@@ -226,6 +304,10 @@ def main():
         for name in ["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"]:
             browser.open(run(name))
             tips(browser, name)
+        for name in ["six-arms", "theorem-7"]:
+            browser.open(folder / name / "report.html")
+            film(browser, name, folder / name / "report.html")
+            print(f"ok     {name}: a film" if not problems else f"       {name}: a film")
         browser.open(folder / "theorem-8" / "report.html")
         expect(value(browser, '[...document.querySelectorAll(".now text")].some((e) => e.textContent.includes("leader"))'), "no leader in the graph")
         ten = folder / "ten.toml"

@@ -1,15 +1,21 @@
 // One quantity over another: paths in a plane, and phase planes. Time runs along the curves; a dot is where the clock stands.
 
 // Whatever all agents have on the grid of the plots, by name: coordinates, their rates, and what only some systems have.
+// The coordinates of an attitude are no angles, and no angular velocity is the rate of one of them.
+const attitudes = joints.length > 0 && joints.every((j) => unitOf(j.axis, (u) => u.q) === "1");
+const velocityOf = (name) => (attitudes ? `angular velocity, ${name}` : `velocity, ${name}`);
 const quantities = (() => {
   const plain = (unit) => (unit === "1" ? "" : unit);
   const perAxis = (columns, leader, name, unit) =>
     joints.map((j) => ({ name: name(j.name), unit: plain(unitOf(j.axis, unit)), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
-  const families = index.families.flatMap(({ id, entries }) => {
-    const title = document.querySelector(`[data-plot="${id}"] h3`)?.firstChild?.textContent ?? id;
-    return entries.map((e) => ({ name: `${title}: ${e.name}`, unit: plain(e.unit), of: e.series, wanted: e.wanted, family: id }));
+  const headings = index.families.map(({ id }) => document.querySelector(`[data-plot="${id}"] h3`));
+  const titles = headings.map((heading, k) => heading?.firstChild?.textContent ?? index.families[k].id);
+  const families = index.families.flatMap(({ id, entries }, k) => {
+    // Cards of one title tell themselves apart by their letters.
+    const letters = titles.filter((title) => title === titles[k]).length > 1 ? ` ${headings[k]?.querySelector(".by")?.textContent ?? ""}` : "";
+    return entries.map((e) => ({ name: `${titles[k]}${letters}${e.name && `: ${e.name}`}`, unit: plain(e.unit), of: e.series, wanted: e.wanted, family: id }));
   });
-  return [...perAxis(signals.q, index.leader?.q, (name) => name, (u) => u.q), ...perAxis(signals.dq, index.leader?.dq, (name) => `velocity, ${name}`, (u) => u.dq), ...families]
+  return [...perAxis(signals.q, index.leader?.q, (name) => name, (u) => u.q), ...perAxis(signals.dq, index.leader?.dq, velocityOf, (u) => u.dq), ...families]
     .filter(({ of }) => of.some((k) => k != null));
 })();
 
@@ -21,7 +27,7 @@ const usualPlane = (() => {
     const other = length.find((q) => q !== one && q.family === one.family);
     if (other) return [one, other];
   }
-  return [quantities[0], quantities.find((q) => q.name === `velocity, ${quantities[0]?.name}`) ?? quantities[1]];
+  return [quantities[0], quantities.find((q) => !attitudes && q.name === velocityOf(quantities[0]?.name)) ?? quantities[1]];
 })();
 
 const planeOptions = quantities.map((q, k) => [String(k), q.unit ? `${q.name} in ${q.unit}` : q.name]);
@@ -142,13 +148,16 @@ const drawPlane = (target, [acrossId, upId], height) => {
   const prepared = (k) => {
     const scale = Math.min(2, devicePixelRatio || 1);
     const [canvas, ctx] = [canvases[k], contexts[k]];
-    Object.assign(canvas, { width: Math.round(size.width * scale), height: Math.round(size.height * scale) });
-    Object.assign(canvas.style, { width: `${size.width}px`, height: `${size.height}px` });
+    const [width, high] = [Math.round(size.width * scale), Math.round(size.height * scale)];
+    if (canvas.width !== width || canvas.height !== high) {
+      Object.assign(canvas, { width, height: high });
+      Object.assign(canvas.style, { width: `${size.width}px`, height: `${size.height}px` });
+    }
     ctx.setTransform(scale, 0, 0, scale, 0, 0);
+    ctx.clearRect(0, 0, size.width, size.height);
     return ctx;
   };
-  const dots = (t) => {
-    const ctx = prepared(1);
+  const dotsAt = (ctx, t) => {
     const place = data.place("main", t);
     const between = (values) => {
       const [a, b] = [values[place.row], values[place.row + (place.part > 0 ? 1 : 0)]];
@@ -194,12 +203,13 @@ const drawPlane = (target, [acrossId, upId], height) => {
       return [{}, ...curves.flatMap((c) => [across, up].map((q) => ({ label: `${c.label}, ${q.name}`, show: isShown(c), agent: c.agent })))];
     },
     curves: () => curves.filter(isShown).length,
-    svg: (title) => {
-      const named = curves.filter(isShown);
-      const under = HEAD + height + 18;
-      return svgPage(size.width, under, title, named, (pen) => void paint(pen, size, HEAD));
+    get width() {
+      return size.width;
     },
-    clock: dots,
+    named: () => curves.filter(isShown),
+    again: (pen, head) => void paint(pen, size, head),
+    dotsAt,
+    clock: (t) => dotsAt(prepared(1), t),
     redraw,
     setScale: redraw,
     setSeries: () => {},
@@ -207,7 +217,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     destroy: () => frame.remove(),
   };
   redraw();
-  dots(whole[0]);
+  plot.clock(whole[0]);
   plots.add(plot);
   return plot;
 };

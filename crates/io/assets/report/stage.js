@@ -14,6 +14,7 @@ const stage = (() => {
   let asked = 0;
   let seen = null;
   let frames = 0;
+  const watchers = [];
 
   slider.max = String(end);
   slider.step = String(end / 2000);
@@ -31,14 +32,17 @@ const stage = (() => {
     drawEdges(pen, see, frame, colours, heard);
     drawWords(pen, see, frame, colours, now);
   };
-  // The picture in vectors, projected.
-  const drawing = () => {
-    const [width, height] = [view.clientWidth, view.clientHeight];
-    const frame = frameAt(now.t, hidden);
-    const pen = svgPen(width, height, measuring());
+  // All of the picture at a time, projected.
+  const paintAt = (pen, t, width, height) => {
+    const frame = frameAt(t, hidden);
     pen.fillStyle = colour("--surface");
     pen.fillRect(0, 0, width, height);
-    paint(pen, looking(width, height, frame.nodes), frame, heardAt(now.t), true);
+    paint(pen, looking(width, height, frame.nodes), frame, heardAt(t), true);
+  };
+  const drawing = () => {
+    const [width, height] = [view.clientWidth, view.clientHeight];
+    const pen = svgPen(width, height, measuring());
+    paintAt(pen, now.t, width, height);
     return pen.document(`${document.title}, t = ${number(now.t, 4)} s`);
   };
   part("view-svg").onclick = () => save("view.svg", new Blob([drawing()], { type: "image/svg+xml" }));
@@ -67,6 +71,7 @@ const stage = (() => {
     const graphs = scene.graphs.length;
     part("graph-when").textContent = `${graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
     for (const plot of plots) plot.clock?.(now.t);
+    watchers.forEach((watch) => watch(now.t));
   };
   const ask = () => {
     if (!asked) asked = requestAnimationFrame(draw);
@@ -105,6 +110,7 @@ const stage = (() => {
     now.playing = on;
     play.textContent = on ? "Pause" : "Play";
     play.setAttribute("aria-pressed", String(on));
+    ask();
     if (!on) return;
     if (now.t >= end) now.t = 0;
     now.since = performance.now();
@@ -215,7 +221,7 @@ const stage = (() => {
   lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
   new ResizeObserver(ask).observe(view);
   draw();
-  return { go, ask, now, end, drawing, frames: () => frames, playing: () => now.playing };
+  return { go, ask, now, end, drawing, paint: paintAt, watch: (watcher) => void watchers.push(watcher), frames: () => frames, playing: () => now.playing };
 })();
 stageGo = (t) => !stage.playing() && stage.go(t);
 stageAsk = stage.ask;

@@ -24,6 +24,10 @@ const svgPen = (width, height, measure) => {
     const opacity = pen.globalAlpha < 1 ? ` opacity="${pen.globalAlpha}"` : "";
     parts.push(`<text x="${short(x)}" y="${short(y)}" style="font:${xml(pen.font)}"${anchor}${baseline}${opacity} ${look}>${xml(said)}</text>`);
   };
+  const moved = (how) => {
+    open += 1;
+    parts.push(`<g transform="${how}">`);
+  };
   const line = () =>
     `stroke="${xml(pen.strokeStyle)}" stroke-width="${pen.lineWidth}" stroke-linecap="${pen.lineCap}" stroke-linejoin="${pen.lineJoin}"` +
     (dash.length ? ` stroke-dasharray="${dash.join(" ")}"` : "");
@@ -60,7 +64,8 @@ const svgPen = (width, height, measure) => {
       return measure.measureText(said);
     },
     setLineDash: (lengths) => void (dash = lengths),
-    // Until what was saved is restored.
+    // These two hold until what was saved is restored.
+    translate: (x, y) => moved(`translate(${short(x)} ${short(y)})`),
     clip: () => {
       clips += 1;
       open += 1;
@@ -160,13 +165,11 @@ const svgPage = (width, under, title, all, draw) => {
 };
 
 // A plot as it stands: the range, the curves and the lines that it shows, with its title above and its legend below.
-const svgOf = (plot, title) => {
-  if (plot.svg) return plot.svg(title);
-  const named = shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
-  return svgPage(plot.width, HEAD + plot.height + 18, title, named, (pen) => drawAgain(plot, pen));
-};
-const drawAgain = (plot, pen) => {
-  const paper = paperOf(plot, pen, HEAD);
+const svgOf = (plot, title) => svgPage(plot.width, HEAD + plot.height + 18, title, namesOf(plot), (pen) => drawAgain(plot, pen, HEAD));
+const namesOf = (plot) => plot.named?.() ?? shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
+const drawAgain = (plot, pen, head) => {
+  if (plot.again) return plot.again(pen, head);
+  const paper = paperOf(plot, pen, head);
   drawGrid(plot, paper, pen);
   drawBreakPoints(paper);
   clipped(paper, () => {

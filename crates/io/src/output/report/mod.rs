@@ -41,7 +41,7 @@ const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
 /// Draws bodies; only on pages that have some.
 const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 13] = [
+const PAGE_JS: [&str; 14] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
@@ -55,6 +55,7 @@ const PAGE_JS: [&str; 13] = [
     include_str!("../../../assets/report/plane.js"),
     include_str!("../../../assets/report/page.js"),
     include_str!("../../../assets/report/stage.js"),
+    include_str!("../../../assets/report/talk.js"),
 ];
 /// Keeps what a reader chose from one page of a run to the next.
 const CHOICES_JS: &str = include_str!("../../../assets/report/choices.js");

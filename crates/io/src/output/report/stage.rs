@@ -9,6 +9,34 @@ use super::{card, sections};
 /// How fast time may pass, by its share of real time.
 const RATES: [(&str, &str); 6] = [("0.1", "⅒"), ("0.5", "½"), ("1", "1"), ("2", "2"), ("5", "5"), ("20", "20")];
 
+/// How long a film may last.
+const FILMS_S: [u32; 4] = [5, 10, 20, 40];
+
+/// A page for a talk, and what can be saved of it.
+fn slide() -> Markup {
+    html! {
+        dialog #talk aria-label="A page for a talk" {
+            canvas #talk-slide tabindex="0" role="img" aria-label="Title, verdict, the picture in space and one plot, at the time of the clock" {}
+            div.talk-tools {
+                label { "plot " select #talk-plot {} }
+                button #talk-play type="button" { "Play" }
+                button #talk-full type="button" { "Full screen" }
+                button #talk-png type="button" { "PNG" }
+                button #talk-svg type="button" { "SVG" }
+                span {
+                    label { "the run in " select #talk-seconds { @for s in FILMS_S { option value=(s) selected[s == 10] { (s) " s" } } } }
+                    " "
+                    label { "as " select #talk-means { option value="film" { "a film" } option value="frames" { "PNG frames" } } }
+                    " "
+                    button #talk-take type="button" { "Save" }
+                }
+                output #talk-progress {}
+                button #talk-close type="button" { "Close" }
+            }
+        }
+    }
+}
+
 /// How fast time passes, to be chosen.
 pub(super) fn rates() -> Markup {
     html! { select #rate { @for (value, words) in RATES { option value=(value) selected[value == "1"] { (words) " ×" } } } }
@@ -24,6 +52,7 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                     div.corner {
                         label { input #follow type="checkbox" checked; " follow" }
                         button #view-reset type="button" { "Reset view" }
+                        button #view-slide type="button" aria-haspopup="dialog" { "Slide" }
                         button #view-svg type="button" aria-label="Save the picture as a drawing" { "SVG" }
                     }
                 }
@@ -41,6 +70,7 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                 } }
                 noscript { p.note { "The picture needs JavaScript." } }
             }
+            (slide())
             div.beside-space {
                 div.card.verdict {
                     (sections::promised(record))
