@@ -985,7 +985,7 @@ def requirements(scenario):
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot.endswith("feedback") for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
         (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
-        (any("bounds" in a.gains for a in agents if a.law != "task_space"), "parameters-within-bounds"),
+        (any("bounds" in a.settings() for a in agents if a.law != "task_space"), "parameters-within-bounds"),
         (frictions(scenario), "smooth-friction"), (scenario.polynomial, "desired-dynamics"), (control is not None, "continuous-time"),
         (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
@@ -1293,9 +1293,9 @@ def solid(scenario, agent):
     possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
     whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
     # A link at an end that weighs nothing moves without effort.
-    if not any(whole) or not any(mass for mass, _ in groups[-1]): return False
-    decided(possible and all(whole), "a link of a URDF may have no inertia of its own")
-    return True
+    heavy = all(mass >= 0 for bodies in groups for mass, _ in bodies)
+    moves = heavy and any(whole) and any(mass for mass, _ in groups[-1])
+    return moves and not decided(possible and all(whole), "a link of a URDF may have no inertia of its own")
 
 # q enters C and g by sines and cosines of angles, and by the travel of joints that slide where one above them turns.
 def unturned(scenario, agent):
@@ -1311,7 +1311,7 @@ def planar(body):
 
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_hold(agent):
-    kind, body = chosen(agent.gains.get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
+    kind, body = chosen(agent.settings().get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
     if kind == "within": return exact(body, "within") > 0
     plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
     decided(plain, "the parameters of this robot are not computed here")

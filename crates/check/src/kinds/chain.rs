@@ -145,12 +145,11 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
                 Some(KindEvidence::FactorBelowFloor { agent, value, floor })
             }
             Factor::Matrix(input) => matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent }),
-            Factor::More(terms) => {
-                cut(terms).then_some(KindEvidence::FactorBelowFloor { agent, value: 0.0, floor })
-            }
+            Factor::More(terms) => cut(terms).then_some(KindEvidence::FactorBelowFloor { agent, value: 0.0, floor }),
         }
     });
-    let vanishing = vanishing.or_else(|| all().find_map(|(index, floor, factor)| at_start(setup, index, floor, factor)));
+    let vanishing =
+        vanishing.or_else(|| all().find_map(|(index, floor, factor)| at_start(setup, index, floor, factor)));
     if let Some(evidence) = vanishing {
         return Hypothesis::new(Id::InputFactor, evidence);
     }
@@ -207,7 +206,8 @@ fn cut(terms: &CascadeTerms) -> bool {
 fn at_start(setup: &Setup, index: usize, floor: f64, factor: Factor<'_>) -> Option<KindEvidence> {
     let Factor::Number(input) = factor else { return None };
     let start = &setup.agents[index].start;
-    let state: Vec<Interval> = start.q.iter().chain(&start.dq).chain(&start.rest).map(|x| Interval::point(*x)).collect();
+    let state: Vec<Interval> =
+        start.q.iter().chain(&start.dq).chain(&start.rest).map(|x| Interval::point(*x)).collect();
     let value = input.fold(&mut Intervals(&state));
     let below = value.low <= value.high && value.low > -floor && value.high < floor;
     let agent = || Named::of(setup, index);

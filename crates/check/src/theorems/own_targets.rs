@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use forwardstep_sim::{AttitudeLaw, Setup};
 use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AttitudeLaw, Setup};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
 use crate::kinds::Claim;

@@ -112,3 +112,18 @@ fn regress_a_link_with_an_inertia_that_no_body_has_is_not_certified_by_the_text(
         assert_eq!([&entry["answer"], &entry["outcome"]], ["holds", expected], "{ixx}: {entry}");
     }
 }
+
+#[test]
+fn regress_bounds_of_an_estimated_mass_are_asked_for_where_a_thrust_carries_it() {
+    let bounded = |bounds: &str| {
+        changed("theorem-5", "estimate_start_kg = 1.2", &format!("estimate_start_kg = 1.2, bounds.{bounds}"))
+    };
+    assert_eq!(
+        judged(&bounded("within = 0.6"), "parameters-within-bounds"),
+        ("holds".to_owned(), "accepted".to_owned())
+    );
+    // Masses that vary are drawn, and not computed by the checker.
+    let outside = bounded("given = { lower = [0.1], upper = [1.0] }");
+    assert_eq!(judged(&outside, "parameters-within-bounds").0, "violated");
+    assert_eq!(judged(&outside, "thrust-gains").1, "accepted");
+}

@@ -41,7 +41,11 @@ fn regress_the_rate_of_a_reference_is_told_at_its_time() {
             let (z, dz) = (of("z"), of("dz"));
             for k in (2..z.len() - 2).step_by(7) {
                 let slope = (z[k - 2] - 8.0 * z[k - 1] + 8.0 * z[k + 1] - z[k + 2]) / 0.12;
-                assert!((slope - dz[k]).abs() < 0.02 * (1.0 + dz[k].abs()), "arm-{agent} {axis}, row {k}: {slope} {}", dz[k]);
+                assert!(
+                    (slope - dz[k]).abs() < 0.02 * (1.0 + dz[k].abs()),
+                    "arm-{agent} {axis}, row {k}: {slope} {}",
+                    dz[k]
+                );
                 (compared, largest) = (compared + 1, largest.max(dz[k].abs()));
             }
         }

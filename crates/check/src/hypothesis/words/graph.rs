@@ -50,7 +50,9 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
             let until = if *for_all_time { "" } else { ", up to the end of the run" };
             match graphs {
                 1 => format!("along the edges of the graph that stays{until}"),
-                _ => format!("along the edges of each of the {graphs} graphs by itself, in whatever order they come{until}"),
+                _ => format!(
+                    "along the edges of each of the {graphs} graphs by itself, in whatever order they come{until}"
+                ),
             }
         }
         GraphEvidence::Unheard { phase, closed_group, .. } => format!(

@@ -51,7 +51,9 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::FactorSingular { agent } => format!("that of {} is a matrix without an inverse", agent.name),
         KindEvidence::FactorFloor { agent, floor, everywhere, matrix } => {
             let known = match everywhere {
-                FactorEverywhere::Fades => "; it has one sign in every state, but may come close to zero far away".into(),
+                FactorEverywhere::Fades => {
+                    "; it has one sign in every state, but may come close to zero far away".into()
+                }
                 FactorEverywhere::Away { least } => {
                     format!("; in every state it is {} at least, which is less", rounded_down(*least))
                 }
