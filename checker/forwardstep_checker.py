@@ -113,7 +113,8 @@ def read_certificate(text):
         no(f"is not JSON, or nested too deeply: {error}")
 
 def read_toml(text):
-    try: return tomllib.loads(text, parse_float=decimal)
+    # What runs is the double next to a number, as its shortest decimal; formulas are texts, and are kept as they are written.
+    try: return tomllib.loads(text, parse_float=lambda number: decimal(repr(float(decimal(number)))))
     except (RecursionError, ValueError) as error:
         raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
@@ -984,7 +985,7 @@ def requirements(scenario):
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot.endswith("feedback") for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
         (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
-        (any("bounds" in a.gains for a in agents if a.law != "task_space"), "parameters-within-bounds"),
+        (any("bounds" in a.settings() for a in agents if a.law != "task_space"), "parameters-within-bounds"),
         (frictions(scenario), "smooth-friction"), (scenario.polynomial, "desired-dynamics"), (control is not None, "continuous-time"),
         (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time"),
@@ -1292,9 +1293,9 @@ def solid(scenario, agent):
     possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
     whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
     # A link at an end that weighs nothing moves without effort.
-    if not any(whole) or not possible or not any(mass for mass, _ in groups[-1]): return False
-    decided(all(whole), "a link of a URDF may have no inertia of its own")
-    return True
+    heavy = all(mass >= 0 for bodies in groups for mass, _ in bodies)
+    moves = heavy and any(whole) and any(mass for mass, _ in groups[-1])
+    return moves and not decided(possible and all(whole), "a link of a URDF may have no inertia of its own")
 
 # q enters C and g by sines and cosines of angles, and by the travel of joints that slide where one above them turns.
 def unturned(scenario, agent):
@@ -1310,7 +1311,7 @@ def planar(body):
 
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_hold(agent):
-    kind, body = chosen(agent.gains.get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
+    kind, body = chosen(agent.settings().get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
     if kind == "within": return exact(body, "within") > 0
     plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
     decided(plain, "the parameters of this robot are not computed here")
@@ -1589,7 +1590,8 @@ def hurwitz(claim, column):
 @rule("common-first-root", "constant")
 def all_constant(claim):
     scenario, edges = claim.scenario, [edge for phase in claim.scenario.recurring() for edge in claim.scenario.graphs[phase]]
-    varies = any(isinstance(edge.weight, str) or edge.delay[0] != "constant_s" for edge in edges)
+    same = lambda kind, body: kind == "constant_s" or kind == "piecewise_constant" and len({*body["values_s"]}) == 1
+    varies = any(isinstance(edge.weight, str) or not same(*edge.delay[:2]) for edge in edges)
     require(claim.proof, scenario.fixed(scenario.recurring()) and not varies, "is not so by the text")
 
 # κ₀ is the same within each class, and all edges that recur lead within a class or to a later one: cycles stay within classes.
@@ -1691,12 +1693,18 @@ def bounded(claim, order, stretch):
 
 # The terms of a sum, each as what it repeats and what is beside that: (P, S) of P S. Signs do not matter to what follows.
 def summands(tree):
-    parts = list(map(summands, parts_of(tree))) if tree[0] in ("+", "-", "*") or tree[:2] == ("f", "neg") else []
+    even = tree[0] in ("+", "-", "*") or tree[:2] == ("f", "neg") or tree[0] == "/" and not has_variable(tree[2])
+    parts = list(map(summands, parts_of(tree))) if even else []
     if tree[0] == "*":
         decided(len(parts[0]) * len(parts[1]) <= 1000, "a formula has too many terms")
         return [(times(p, q), times(r, s)) for (p, r), (q, s) in itertools.product(*parts)]
-    repeats = has_variable(tree) and attempt(period, tree) is not None
-    return sum(parts, []) or [(ONE, tree) if repeats else (tree, ONE)]
+    return sum(parts, []) or [(ONE, tree) if has_variable(tree) and repeats(tree) else (tree, ONE)]
+
+# A constant that is divided by stands among the terms, too, which changes nothing. A sine or cosine of what goes beyond every bound
+# comes to 1 again and again.
+def repeats(tree): return turns_for_ever(tree) or attempt(period, tree) is not None
+
+def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and infinite((attempt(limit, tree[2]) or (0, 0))[0])
 
 # Whether a formula exceeds every bound: the P of one term does, its S is not always zero, and beside it all others vanish.
 def grows(tree):
@@ -1707,7 +1715,7 @@ def grows(tree):
 # Whether a formula repeats, or stays, and differs from zero at one of some times.
 def swings(tree):
     values = (attempt(enclose, tree, (Fraction(3 * k, 7),) * 2) or WHOLE for k in range(8))
-    return (not has_variable(tree) or attempt(period, tree) is not None) and any(low > 0 or high < 0 for low, high in values)
+    return (not has_variable(tree) or repeats(tree)) and any(low > 0 or high < 0 for low, high in values)
 
 # A derivative, or the motion itself of who tracks it, goes beyond every bound as t → ∞.
 @rule("bounded-target bounded-leader", "diverges")

@@ -57,7 +57,12 @@ pub(crate) fn within_reach(agent: &AgentSetup, law: &TaskSpaceLaw, end_s: f64) -
 impl Reach {
     /// Whether a tip that keeps between these distances stays within reach and off its edge, where no Jacobian is regular.
     fn holds(&self, MotionExtent { least, most }: MotionExtent) -> bool {
-        most < self.most && (!self.exact || least > self.least)
+        most < self.most && (!self.has_inner_edge() || least > self.least)
+    }
+
+    /// Whether places that are too near are known.
+    fn has_inner_edge(&self) -> bool {
+        self.exact || self.least > 0.0
     }
 
     fn limit(&self, side: ReachSide) -> f64 {
@@ -72,7 +77,7 @@ impl Reach {
         let room = ROUNDING * self.most;
         if distance_m > self.most + room {
             Some(ReachSide::Beyond)
-        } else if self.exact && (distance_m < self.least - room || distance_m <= room) {
+        } else if self.has_inner_edge() && (distance_m < self.least - room || distance_m <= room) {
             Some(ReachSide::Inside)
         } else {
             None
@@ -94,9 +99,9 @@ pub(crate) fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
         }),
         TipSetup::Point { coordinates, .. } => {
             let tip = law.tip.of_tree(agent.robot.kind.downcast::<Arc<Tree>>()?)?.ok()?;
-            let (first, most) = tip.reach()?;
+            let (first, [least, most]) = tip.reach()?;
             let from = coordinates.iter().filter_map(|coordinate| first.get(*coordinate).copied()).collect();
-            Some(Reach { from, least: 0.0, most, exact: false })
+            Some(Reach { from, least, most, exact: false })
         }
     }
 }

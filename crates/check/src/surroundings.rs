@@ -1,7 +1,8 @@
 //! What surrounds a law: pushes, limits, sampling.
 
+use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::{Friction, SMOOTHING_LOSS};
-use forwardstep_sim::push::Push;
+use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
@@ -34,7 +35,7 @@ fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
         torques_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && is_lagrangian(agent)),
         others_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && !is_lagrangian(agent)),
         hands_for_ever: pushed(|_, push| endless(push) && push.is_hand()),
-        last_end_s: pushes.map(|push| push.span_s()[1]).fold(0.0, f64::max),
+        last_end_s: pushes.map(ends_s).fold(0.0, f64::max),
     };
     Some(Hypothesis::new(Id::PushesEnd, evidence))
 }
@@ -46,7 +47,27 @@ pub(crate) fn acts(push: &Push) -> bool {
 }
 
 fn endless(push: &Push) -> bool {
-    push.span_s()[1] == f64::INFINITY
+    ends_s(push) == f64::INFINITY
+}
+
+/// Doublings of a second after which formulas are looked at.
+const DOUBLINGS: i32 = 24;
+
+/// When a push ends, s; one without an end, too, where its formulas are zero from some time on. A hand does not let go at zero.
+fn ends_s(push: &Push) -> f64 {
+    let [_, ends_s] = push.span_s();
+    let zero_from = |from_s: f64| match push.course() {
+        Course::Each(functions) => functions.iter().all(|function| match function {
+            Function::Constant(value) => *value == 0.0,
+            Function::Formula(formula) => formula.bounds(from_s, f64::INFINITY) == Interval::point(0.0),
+        }),
+        Course::Table(_) => false,
+    };
+    if ends_s < f64::INFINITY || push.is_hand() {
+        return ends_s;
+    }
+    let times = std::iter::once(0.0).chain((0..DOUBLINGS).map(|k| libm::ldexp(1.0, k)));
+    times.into_iter().find(|from_s| zero_from(*from_s)).unwrap_or(f64::INFINITY)
 }
 
 /// What keeps the torque from being what the law asks for.

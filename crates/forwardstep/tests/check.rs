@@ -4,6 +4,10 @@
 
 #[path = "check/derivation.rs"]
 mod derivation;
+#[path = "check/narrow.rs"]
+mod narrow;
+#[path = "check/protocols.rs"]
+mod protocols;
 #[path = "check/smoothness.rs"]
 mod smoothness;
 mod support;

@@ -228,7 +228,7 @@ pub(super) fn within_reach(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let known = reach(agent, agent.law.downcast()?)?;
     let paths = agent.target.as_ref()?.paths().iter();
     let entries: Vec<Course<'_>> = paths.zip(&known.from).map(|(path, from)| Course::of(path).from(*from)).collect();
-    // Not all that is nearer than a tree can get can be reached.
+    // The checker knows of no place that is too near for a tree.
     let least = if known.exact { known.least * known.least } else { -1.0 };
     let most = known.most * known.most;
     match claim.answer {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::expression::{Domain, Expression};
+use forwardstep_core::expression::{Domain, Expression, Interval, Intervals};
 use forwardstep_core::plant::CascadeTerms;
 use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
@@ -145,9 +145,11 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
                 Some(KindEvidence::FactorBelowFloor { agent, value, floor })
             }
             Factor::Matrix(input) => matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent }),
-            Factor::More => None,
+            Factor::More(terms) => cut(terms).then_some(KindEvidence::FactorBelowFloor { agent, value: 0.0, floor }),
         }
     });
+    let vanishing =
+        vanishing.or_else(|| all().find_map(|(index, floor, factor)| at_start(setup, index, floor, factor)));
     if let Some(evidence) = vanishing {
         return Hypothesis::new(Id::InputFactor, evidence);
     }
@@ -181,7 +183,7 @@ enum Factor<'a> {
     /// Whose smallest singular value counts.
     Matrix(&'a [Vec<Expression>]),
     /// Of a chain that is not strict: more than the last equation says.
-    More,
+    More(&'a CascadeTerms),
 }
 
 fn factor(model: &ChainModel) -> Factor<'_> {
@@ -189,8 +191,27 @@ fn factor(model: &ChainModel) -> Factor<'_> {
         ChainModel::Derivatives(terms) => Factor::Number(terms.input()),
         ChainModel::Vector(terms) => Factor::Matrix(terms.input()),
         ChainModel::Cascade(terms) if terms.is_strict() => Factor::Number(terms.input()),
-        ChainModel::Cascade(_) => Factor::More,
+        ChainModel::Cascade(terms) => Factor::More(terms),
     }
+}
+
+/// Whether some equation of a chain does not hold the state that is to move it.
+fn cut(terms: &CascadeTerms) -> bool {
+    let holds = |expression: &Expression, next: usize| expression.has(next);
+    let equations = terms.known().iter().zip(terms.regressors()).enumerate().take(terms.order().saturating_sub(1));
+    equations.into_iter().any(|(k, (known, row))| !holds(known, k + 1) && !row.iter().any(|entry| holds(entry, k + 1)))
+}
+
+/// A factor that is below its floor where the run begins.
+fn at_start(setup: &Setup, index: usize, floor: f64, factor: Factor<'_>) -> Option<KindEvidence> {
+    let Factor::Number(input) = factor else { return None };
+    let start = &setup.agents[index].start;
+    let state: Vec<Interval> =
+        start.q.iter().chain(&start.dq).chain(&start.rest).map(|x| Interval::point(*x)).collect();
+    let value = input.fold(&mut Intervals(&state));
+    let below = value.low <= value.high && value.low > -floor && value.high < floor;
+    let agent = || Named::of(setup, index);
+    below.then(|| KindEvidence::FactorAtStart { agent: agent(), value: 0.5 * (value.low + value.high), floor })
 }
 
 /// What is known of a factor over all states.
@@ -201,7 +222,7 @@ fn everywhere(factor: Factor<'_>) -> FactorEverywhere {
             let least = matrix_factor::least_everywhere(input);
             return if least > 0.0 { FactorEverywhere::Away { least } } else { FactorEverywhere::Unknown };
         }
-        Factor::More => return FactorEverywhere::Unknown,
+        Factor::More(_) => return FactorEverywhere::Unknown,
     };
     let (within, nonzero) = input.everywhere();
     let least = within.low.max(-within.high);

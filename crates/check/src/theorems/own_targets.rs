@@ -4,9 +4,9 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-use forwardstep_sim::Setup;
 use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{AttitudeLaw, Setup};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
 use crate::kinds::Claim;
@@ -40,7 +40,11 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
             let tracking = setup.tracks(index);
             // A formation may travel: of an offset only the derivatives count.
             let lowest = if tracking { 0 } else { 1 };
-            let bounded = how_far(target, lowest..=needed, setup.time.end_s);
+            let bounded = match how_far(target, lowest..=needed, setup.time.end_s) {
+                // A quaternion of any length: that it grows says nothing of the attitude.
+                Bounded::Unbounded { .. } if agent.law.is::<AttitudeLaw>() => Bounded::NotShown,
+                bounded => bounded,
+            };
             let group = Group { derivatives: needed, tracking, bounded };
             groups.entry(group).or_default().push(Named::of(setup, index));
         }

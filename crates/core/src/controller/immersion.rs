@@ -40,7 +40,7 @@ use alloc::vec::Vec;
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
 use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::LengthError;
-use crate::expression::{Expression, Graph, Tape};
+use crate::expression::{Expression, Graph, Interval, Intervals, Tape};
 use crate::law::ParameterBounds;
 use crate::plant::{Chain, Formulas, FormulasWork, Terms};
 use crate::reference::Position;
@@ -174,7 +174,8 @@ impl Immersion {
     }
 }
 
-/// Compares ∂Φ/∂v with φ at points spread over [−2, 2]^k.
+/// Compares ∂Φ/∂v with φ at points spread over [−2, 2]^k, and by intervals, which a slip that is small there does not escape,
+/// at these and at points a thousand and a million times as far.
 fn compare(terms: &Formulas, slopes: &Tape) -> Result<(), ChainError> {
     let (k, p) = (terms.order(), terms.parameters());
     let (mut work, mut workspace) = (terms.scratch(), slopes.workspace());
@@ -190,6 +191,17 @@ fn compare(terms: &Formulas, slopes: &Tape) -> Result<(), ChainError> {
         for (parameter, (phi, slope)) in phi.iter().zip(&slope).enumerate() {
             if (phi - slope).abs() > CLOSE * phi.abs().max(1.0) {
                 return Err(ChainError::Antiderivative { parameter, slope: *slope, regressor: *phi });
+            }
+        }
+        for scale in [1.0, 1e3, 1e6] {
+            let far: Vec<f64> = x.iter().map(|x| scale * x).collect();
+            let at: Vec<Interval> = far.iter().map(|x| Interval::point(*x)).collect();
+            for (parameter, (phi, slope)) in terms.regressor().iter().zip(slopes.enclose(&far)?).enumerate() {
+                let phi = phi.fold(&mut Intervals(&at));
+                if phi.low <= phi.high && (phi.high < slope.low || slope.high < phi.low) {
+                    let [slope, regressor] = [slope, phi].map(|within| 0.5 * (within.low + within.high));
+                    return Err(ChainError::Antiderivative { parameter, slope, regressor });
+                }
             }
         }
     }

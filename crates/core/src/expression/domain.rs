@@ -208,7 +208,7 @@ impl Expression {
         (part.within, self.shown(|part| part.total && part.nonzero))
     }
 
-    /// A point at which it is zero, as far as that can be told in `f64`: it changes its sign there.
+    /// A point at which it is zero, as far as that can be told in `f64`: it is so by interval arithmetic, or changes its sign.
     pub fn zero(&self) -> Option<Vec<f64>> {
         Place { of: Some(Expression::number(1.0)), inner: self.clone(), kind: Kind::Divisor }.fails().map(|(at, _)| at)
     }

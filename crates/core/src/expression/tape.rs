@@ -5,7 +5,8 @@ use alloc::vec::Vec;
 
 use super::float::{apply, combine, power};
 use super::graph::Op;
-use super::{ExpressionError, Graph, Node};
+use super::interval::{Interval, Intervals};
+use super::{Algebra, ExpressionError, Graph, Node, Number};
 use crate::LengthError;
 
 /// Several values of a [`Graph`], computed together: operation i writes entry i of the workspace.
@@ -92,4 +93,31 @@ impl Tape {
         }
         Ok(())
     }
+
+    /// Intervals that hold the values for `variables`, with room for what the constants were before they were rounded to `f64`.
+    ///
+    /// # Errors
+    /// [`LengthError`] when `variables` has the wrong length.
+    pub fn enclose(&self, variables: &[f64]) -> Result<Vec<Interval>, LengthError> {
+        LengthError::check("variables", self.variables, variables.len())?;
+        let points: Vec<Interval> = variables.iter().map(|x| Interval::point(*x)).collect();
+        let (mut algebra, mut found) = (Intervals(&points), Vec::<Interval>::with_capacity(self.ops.len()));
+        for op in &self.ops {
+            let value = match *op {
+                Op::Number(bits) => around(f64::from_bits(bits)),
+                Op::Variable(variable) => algebra.variable(variable),
+                Op::Unary(function, a) => algebra.unary(function, found[a.0]),
+                Op::Binary(function, a, b) => algebra.binary(function, found[a.0], found[b.0]),
+                Op::Power(a, exponent) => algebra.power(found[a.0], &Number::from(f64::from_bits(exponent))),
+            };
+            found.push(value);
+        }
+        Ok(self.outputs.iter().map(|node| found[node.0].or_whole()).collect())
+    }
+}
+
+/// What a few operations on constants round to this number; whole numbers are taken as they are.
+fn around(value: f64) -> Interval {
+    let room = if libm::trunc(value) == value { 0.0 } else { 1e-15 * value.abs() };
+    Interval::point(value).with_room(room)
 }

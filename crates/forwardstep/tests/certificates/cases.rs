@@ -56,3 +56,74 @@ fn lengths_of_planar_arms_are_held_against_the_bounds_of_their_estimates() {
     let text = changed("theorem-6", "kinematic_gain = 1 ", bounds);
     assert_eq!(judged(&text, "lengths-within-bounds"), ("holds".to_owned(), "accepted".to_owned()));
 }
+
+#[test]
+fn regress_delays_that_never_change_are_constant_however_they_are_written() {
+    let text = |values: &str| {
+        format!(
+            "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"m\"\nrobot.point_mass = {{ mass_kg = 2, dimension = 1 }}\n\
+             reference.consensus.roots_per_s = [4.0, 5.0]\nstart.position_m = [0.0]\n[[agents]]\nname = \"n\"\n\
+             robot.point_mass = {{ mass_kg = 2, dimension = 1 }}\nreference.consensus.roots_per_s = [0.2, 1.0]\n\
+             start.position_m = [1.0]\n[reference.consensus]\nexchange = \"position_velocity\"\n[network]\n\
+             delay.piecewise_constant = {{ times_s = [0, 1], values_s = {values}, period_s = 2 }}\n\
+             edges = [[\"m\", \"n\"], [\"n\", \"m\"]]\n"
+        )
+    };
+    let is = |values: &str| judged(&text(values), "common-first-root");
+    assert_eq!(is("[0.2, 0.2]"), ("holds".to_owned(), "accepted".to_owned()));
+    // Doubles that programs print with seventeen digits.
+    assert_eq!(judged(&text("[0.30000000000000004, 0.29999999999999999]"), "bounded-delays").1, "accepted");
+    assert_eq!(is("[0.2, 0.3]").0, "not covered by the paper");
+}
+
+#[test]
+fn regress_a_link_with_an_inertia_that_no_body_has_is_not_certified_by_the_text() {
+    let folder = folder();
+    let link = |name: &str, ixx: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><origin xyz=\"0.5 0 0\"/><mass value=\"1\"/>\
+             <inertia ixx=\"{ixx}\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str| {
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><origin xyz=\"1 0 0\"/>\
+             <axis xyz=\"0 1 0\"/><limit lower=\"-3\" upper=\"3\" effort=\"100\" velocity=\"5\"/></joint>"
+        )
+    };
+    for (ixx, expected) in [("0.1", "accepted"), ("-0.05", "could not check")] {
+        let urdf = format!(
+            "<robot name=\"r\"><link name=\"base\"/>{}{}{}{}</robot>",
+            link("one", "0.1"),
+            link("two", ixx),
+            joint("a", "base", "one"),
+            joint("b", "one", "two")
+        );
+        fs::write(folder.path().join("arm.urdf"), urdf).unwrap();
+        let file = folder.path().join("own.toml");
+        let text = "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.urdf.file = \"arm.urdf\"\n\
+                    start.position_rad = [[0.1, 0.2], [0.3, 0.4]]\n[reference.consensus]\nroots_per_s = [1.0, 2.0]\n\
+                    exchange = \"position_velocity\"\n[network]\nedges = [[\"m-1\", \"m-2\"]]\n";
+        fs::write(&file, text).unwrap();
+        let found = checked(&certified(file.to_str().unwrap(), folder.path()), &file);
+        let entries = found["entries"].as_array().unwrap();
+        let entry = entries.iter().find(|entry| entry["id"] == "uniform-inertia").unwrap();
+        // It turns about the second axis alone, so that M is positive definite all the same.
+        assert_eq!([&entry["answer"], &entry["outcome"]], ["holds", expected], "{ixx}: {entry}");
+    }
+}
+
+#[test]
+fn regress_bounds_of_an_estimated_mass_are_asked_for_where_a_thrust_carries_it() {
+    let bounded = |bounds: &str| {
+        changed("theorem-5", "estimate_start_kg = 1.2", &format!("estimate_start_kg = 1.2, bounds.{bounds}"))
+    };
+    assert_eq!(
+        judged(&bounded("within = 0.6"), "parameters-within-bounds"),
+        ("holds".to_owned(), "accepted".to_owned())
+    );
+    // Masses that vary are drawn, and not computed by the checker.
+    let outside = bounded("given = { lower = [0.1], upper = [1.0] }");
+    assert_eq!(judged(&outside, "parameters-within-bounds").0, "violated");
+    assert_eq!(judged(&outside, "thrust-gains").1, "accepted");
+}

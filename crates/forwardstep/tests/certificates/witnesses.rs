@@ -50,7 +50,15 @@ fn a_target_that_swings_ever_wider_is_refuted() {
              [reference.tracking]\nroots_per_s = [1.0, 2.0]\n"
         )
     };
-    for target in ["t*sin(t)", "3 - sqrt(t)*cos(2*t)*t^2", "t*sin(t) + 1/(1+t)", "-(t^2*cos(t))"] {
+    for target in [
+        "t*sin(t)",
+        "3 - sqrt(t)*cos(2*t)*t^2",
+        "t*sin(t) + 1/(1+t)",
+        "-(t^2*cos(t))",
+        "sin(t^2)",
+        "cos(1 - t^2)/2",
+        "t*sin(t)/10",
+    ] {
         violated(&masses(target), "bounded-target", "diverges");
     }
     for target in ["sin(t)", "sin(t)/(1+t)", "t*sin(t)*exp(-t)"] {

@@ -293,8 +293,11 @@ impl CourseFound {
         };
         // Twice the prediction is too much to choose a motor by.
         let at_most = peak.at_most.map_or_else(String::new, |at_most| match at_most / peak.value.abs() {
-            ratio if ratio <= 1.0 => String::new(),
-            ratio if ratio <= 2.0 => format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course"),
+            ratio if ratio <= 1.0 || at_most == 0.0 => String::new(),
+            // Nothing is a share of no torque.
+            ratio if ratio <= 2.0 || peak.value == 0.0 => {
+                format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course")
+            }
             ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
         });
         Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.value.abs(), peak.t_s))

@@ -23,6 +23,7 @@ use super::file::{AGENT_REFERENCE, LAW, REFERENCE, ROBOT};
 use super::kinds::Kinds;
 use super::network_file::{DELAY, SWITCHING};
 use super::value_problem::ValueProblem;
+use super::values::shorter;
 use crate::shown::breaks_lines;
 
 /// Bytes that a text may have.
@@ -116,7 +117,13 @@ impl<'a, 'i> ValueDe<'a, 'i> {
         match self.value.get_ref() {
             DeValue::Integer(integer) => Ok(self.integer(integer)? as f64),
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
-                Ok(value) if value.abs() <= LARGEST => Ok(value),
+                Ok(value) if value.abs() <= LARGEST => match shorter(float.as_str(), value) {
+                    None => Ok(value),
+                    Some(kept) => {
+                        let found = float.as_str().into();
+                        Err(Fault::new(ValueProblem::TooManyDigits { found, kept }).at(&self.value.span()))
+                    }
+                },
                 Ok(_) if !float.as_str().contains(['i', 'n']) => Err(self.too_large(float.as_str().into())),
                 _ => Err(Fault::new(ValueProblem::NotFinite { found: float.as_str().into() }).at(&self.value.span())),
             },

@@ -103,6 +103,14 @@ pub enum ValueProblem {
         /// What was written.
         found: String,
     },
+    /// A number of more digits than are computed with.
+    #[error("{found} has more digits than are computed with")]
+    TooManyDigits {
+        /// What was written.
+        found: String,
+        /// What would be computed with.
+        kept: String,
+    },
     /// A number out of its range.
     #[error(transparent)]
     Quantity(QuantityError),
@@ -212,6 +220,7 @@ impl ValueProblem {
             ValueProblem::UnknownChoice { found, allowed } => within_scope(found, "choose one of", allowed),
             ValueProblem::NoChoice { allowed } => choose("", "choose one of", allowed),
             ValueProblem::NumberTooLarge { .. } => "numbers may be up to 1e30 in size, whole numbers up to 9e18".into(),
+            ValueProblem::TooManyDigits { kept, .. } => format!("write {kept}, so that what is checked is what runs"),
             ValueProblem::Text { most, .. } => {
                 format!("names, choices and titles are one line of at most {most} bytes without control characters")
             }

@@ -350,3 +350,15 @@ inline_schema!(StartValues, "StartValues", |generator| json_schema!({
 inline_schema!(Named, "Named", |_generator| json_schema!({
     "type": "object", "additionalProperties": { "type": "number" }
 }));
+
+/// Digits that are written for any `f64`.
+const DIGITS: usize = 17;
+
+/// What is computed with instead of a number of so many digits that some of them are lost. Up to seventeen stand for the `f64` next
+/// to them, as programs write it.
+pub(super) fn shorter(written: &str, value: f64) -> Option<String> {
+    let significand = written.split(['e', 'E']).next().unwrap_or_default();
+    let digits: String = significand.chars().filter(char::is_ascii_digit).collect();
+    let digits = digits.trim_start_matches('0').trim_end_matches('0');
+    (digits.len() > DIGITS).then(|| format!("{value:?}"))
+}

@@ -105,6 +105,15 @@ pub enum KindEvidence {
         /// Its floor.
         floor: f64,
     },
+    /// The factor of the input is below its floor where the run begins.
+    FactorAtStart {
+        /// Whose.
+        agent: Named,
+        /// Its value.
+        value: f64,
+        /// Its floor.
+        floor: f64,
+    },
     /// The factor of the input is a constant matrix without an inverse.
     FactorSingular {
         /// Whose.
@@ -216,14 +225,14 @@ pub enum Term {
 /// What is known of a factor of the input over all states, where that is not enough.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FactorEverywhere {
-    /// It has one sign, but comes as close to zero as one likes, far away.
+    /// It has one sign, but was not shown to keep away from zero, far away.
     Fades,
     /// It stays away from zero, but comes below its floor.
     Away {
         /// It is nowhere smaller in magnitude.
         least: f64,
     },
-    /// It changes its sign in this state.
+    /// It is zero in this state, or changes its sign there.
     Zero(Vec<f64>),
     /// Nothing.
     Unknown,
@@ -272,6 +281,7 @@ impl KindEvidence {
             | KindEvidence::RankDeficient { .. }
             | KindEvidence::HalfTurn
             | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::FactorAtStart { .. }
             | KindEvidence::FactorSingular { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }
@@ -296,6 +306,7 @@ impl KindEvidence {
             | KindEvidence::ConstantFactor
             | KindEvidence::NoTip
             | KindEvidence::FactorBelowFloor { .. }
+            | KindEvidence::FactorAtStart { .. }
             | KindEvidence::FactorSingular { .. }
             | KindEvidence::LengthsOutsideRegressor(_)
             | KindEvidence::LengthsKnown

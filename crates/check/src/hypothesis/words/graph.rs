@@ -48,7 +48,12 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         }
         GraphEvidence::InEveryGraph { graphs, for_all_time } => {
             let until = if *for_all_time { "" } else { ", up to the end of the run" };
-            format!("along the edges of each of the {graphs} graphs by itself, in whatever order they come{until}")
+            match graphs {
+                1 => format!("along the edges of the graph that stays{until}"),
+                _ => format!(
+                    "along the edges of each of the {graphs} graphs by itself, in whatever order they come{until}"
+                ),
+            }
         }
         GraphEvidence::Unheard { phase, closed_group, .. } => format!(
             "in phase {phase} nothing of the leader reaches [{}], who hear no agent outside themselves: the leader moves away from \

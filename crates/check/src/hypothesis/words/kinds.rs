@@ -43,16 +43,21 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         }
         KindEvidence::ConstantFactor => "it is constant".into(),
         KindEvidence::FactorBelowFloor { agent, value, floor } => {
-            format!("that of {} is {value} for ever, which is less than its floor of {floor}", agent.name)
+            format!("that of {} is {} for ever, which is less than its floor of {floor}", agent.name, rounded(*value))
+        }
+        KindEvidence::FactorAtStart { agent, value, floor } => {
+            format!("that of {} starts at {}, where the run ends: its floor is {floor}", agent.name, rounded(*value))
         }
         KindEvidence::FactorSingular { agent } => format!("that of {} is a matrix without an inverse", agent.name),
         KindEvidence::FactorFloor { agent, floor, everywhere, matrix } => {
             let known = match everywhere {
-                FactorEverywhere::Fades => "; it has one sign in every state, but comes close to zero far away".into(),
+                FactorEverywhere::Fades => {
+                    "; it has one sign in every state, but may come close to zero far away".into()
+                }
                 FactorEverywhere::Away { least } => {
                     format!("; in every state it is {} at least, which is less", rounded_down(*least))
                 }
-                FactorEverywhere::Zero(at) => format!("; it changes its sign {}", in_state(at)),
+                FactorEverywhere::Zero(at) => format!("; it comes to zero {}", in_state(at)),
                 FactorEverywhere::Unknown => String::new(),
             };
             let falls = match matrix {

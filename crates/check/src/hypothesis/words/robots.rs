@@ -62,8 +62,12 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
                     between(rounded_up(reach.least.max(0.0)), rounded_down(reach.most))
                 )
             } else {
+                let folded = match reach.least > 0.0 {
+                    true => format!(", and comes no nearer than {} m", rounded_up(reach.least)),
+                    false => String::new(),
+                };
                 format!(
-                    "{target}, and the arm is {} m long when stretched; whether it can be turned there is not asked",
+                    "{target}, and the arm is {} m long when stretched{folded}; whether it can be turned there is not asked",
                     rounded(reach.most)
                 )
             }

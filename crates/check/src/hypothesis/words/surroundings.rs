@@ -54,8 +54,8 @@ fn pushes(pushed: &[Named], [torques, others, hands]: [&[Named]; 3], last_end_s:
     let mut because = Vec::new();
     if !torques.is_empty() {
         because.push(format!(
-            "{} pushed for ever: s does not vanish but, where parameters are known and the push settles, comes to rest at \
-             K s = tau_ext",
+            "{} pushed for ever: nothing says that s vanishes; where parameters are known and the push settles, s comes to \
+             rest at K s = tau_ext",
             is_or_are(torques)
         ));
     }

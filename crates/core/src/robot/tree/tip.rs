@@ -48,7 +48,7 @@ use alloc::vec::Vec;
 
 use super::axes::Axes;
 use super::follows::{Follows, MOST_JOINTS, TipError};
-use super::model::Tree;
+use super::model::{Body, Tree};
 use super::motion::Seat;
 use super::spatial::{Mat3, Vec3};
 use super::turned::Turned;
@@ -157,18 +157,36 @@ impl TreeTip {
         inside
     }
 
-    /// What the tip cannot leave: the place of the first joint in the frame of the base, m, and the sum of all lengths behind it, m,
-    /// rounded up. `None` where a joint slides.
-    pub fn reach(&self) -> Option<([f64; 3], f64)> {
+    /// What the tip cannot leave: the place of the first joint in the frame of the base, m, and between which distances from it
+    /// the tip is, m, rounded outwards. `None` where a joint slides.
+    ///
+    /// It is no farther than the sum of all lengths behind that joint, and no nearer than the longest less all others: lengths
+    /// of a polygon. Where one coordinate is left out it may be nearer, unless all joints turn about that coordinate: then the
+    /// lengths are those in the plane of the two others.
+    pub fn reach(&self) -> Option<([f64; 3], [f64; 2])> {
         let bodies = &self.tree.bodies;
         let (first, rest) = bodies.split_first()?;
         let turning = bodies.iter().all(|body| body.kind == JointKind::Revolute);
-        let lengths = rest.iter().map(|body| body.translation).chain([self.tool]).map(|p| {
-            let p = Vec3::<Interval>::splat(p);
-            p.dot(p).root()
-        });
-        let sum = lengths.fold(Interval::point(0.0), |sum, length| sum + length);
-        turning.then_some((first.translation, sum.high))
+        let flat = self.keeps_to_its_plane();
+        let tool = bodies.last().map(|last| last.inner_vector(Vec3::splat(self.tool)))?;
+        let (mut sum, mut longest) = (Interval::point(0.0), Interval::point(0.0));
+        for [x, y, z] in rest.iter().map(|body| body.translation).chain([[tool.x, tool.y, tool.z]]) {
+            let p = Vec3::<Interval>::splat([x, y, if flat { 0.0 } else { z }]);
+            let length = p.dot(p).root();
+            (sum, longest) = (sum + length, if length.low > longest.low { length } else { longest });
+        }
+        let least = if flat || self.coordinates.len() == 3 { (longest + longest - sum).low.max(0.0) } else { 0.0 };
+        turning.then_some((first.translation, [least, sum.high]))
+    }
+
+    /// Whether two coordinates are controlled, and all joints turn about the third, without rounding.
+    fn keeps_to_its_plane(&self) -> bool {
+        let along = |body: &Body, axis: usize| (0..3).all(|k| (body.rotation[k][2] != 0.0) == (k == axis));
+        let Some((first, rest)) = self.tree.bodies.split_first() else { return false };
+        let left = (0..3).find(|axis| !self.coordinates.contains(axis));
+        self.coordinates.len() == 2
+            && left.is_some_and(|left| along(first, left))
+            && rest.iter().all(|body| along(body, 2))
     }
 
     /// Of a pose the rotation matrix of the tip in the base, row by row, by intervals that hold it for the angles as they are written.

@@ -1,5 +1,6 @@
 //! `robot.ship`: a fully actuated surface ship in the earth frame.
 
+use forwardstep_core::expression::Number;
 use forwardstep_sim::quantity::{QuantityError, Requirement};
 use forwardstep_sim::{RobotSetup, Start};
 use schemars::JsonSchema;
@@ -97,7 +98,7 @@ impl RobotKind for ShipFile {
 }
 
 fn out_of_range(key: &'static str, value: f64, most: f64) -> ValueProblem {
-    let requirement = Requirement::Within { low: -most, high: most };
+    let requirement = Requirement::Within { low: 0.0 - most, high: most };
     ValueProblem::Quantity(QuantityError { path: key.into(), value, requirement })
 }
 
@@ -107,9 +108,13 @@ fn theta(file: &ShipFile) -> Result<[f64; 9], Fault> {
     let ShipInertiaFile { surge_kg, sway_kg, sway_yaw_kg_m, yaw_kg_m2 } = &file.inertia.value;
     let (m11, m22) = (positive("surge_kg", surge_kg)?, positive("sway_kg", sway_kg)?);
     let (m23, m33) = (given(sway_yaw_kg_m), positive("yaw_kg_m2", yaw_kg_m2)?);
-    if m22 * m33 <= m23 * m23 {
+    // As the decimals are written: 0.1 · 0.9 is 0.3².
+    let written = |value: f64| Number::written(value);
+    if written(m22) * written(m33) <= written(m23) * written(m23) {
         let most = (m22 * m33).sqrt();
-        let problem = out_of_range("sway_yaw_kg_m", m23, most);
+        // The edge itself is singular.
+        let within = most.min(m23.abs()) * (1.0 - f64::EPSILON);
+        let problem = out_of_range("sway_yaw_kg_m", m23, within);
         return Err(fault(sway_yaw_kg_m.as_ref().unwrap_or(sway_kg), problem));
     }
     let Some(At { value: damping, .. }) = &file.damping else {

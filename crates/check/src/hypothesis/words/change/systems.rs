@@ -70,6 +70,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::FactorBelowFloor { agent, value, .. } => {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
+        KindEvidence::FactorAtStart { agent, .. } => format!("a start of {} at which ψ is larger", agent.name),
         KindEvidence::FactorSingular { agent } => {
             format!("rows of ψ for {} of which none follows from the others", agent.name)
         }

@@ -1,0 +1,180 @@
+//! Cases that lie close to the edge of a hypothesis, and statements that have to be true there.
+
+use std::fs;
+
+use crate::support::{folder, forwardstep, stderr, stdout};
+use crate::{answered, with};
+
+/// Two masses that hear each other, and more.
+fn masses(more: &str) -> String {
+    format!(
+        "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"m\"\ncount = 2\n\
+         robot.point_mass = {{ dimension = 1, mass_kg = 2 }}\nstart.position_m = [[1.0], [0.0]]\n\
+         [reference.consensus]\nroots_per_s = [1.0, 2.0]\nexchange = \"position_velocity\"\n[law.known]\ndamping.gain = 5\n\
+         [network]\nedges = [[\"m-1\", \"m-2\"], [\"m-2\", \"m-1\"]]\n{more}"
+    )
+}
+
+/// Two chains that hear each other.
+fn chains(robot: &str, law: &str) -> String {
+    format!(
+        "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.{robot}\nstart.position = [[1.0], [-0.8]]\n\
+         [reference.consensus]\nroots_per_s = [1.0, 2.0]\nexchange = \"position\"\n[law.{law}]\n\
+         [network]\nedges = [[\"m-1\", \"m-2\"], [\"m-2\", \"m-1\"]]\n"
+    )
+}
+
+/// What is said where a scenario is refused.
+fn refused(text: &str) -> String {
+    let folder = with(text);
+    stderr(&forwardstep(&folder, &["check", "two.toml"]).code(2))
+}
+
+fn answer(text: &str, id: &str) -> String {
+    answered(&folder(), text, id).0
+}
+
+/// A planar arm of one metre and 0.8 m as a URDF, in the plane of x and z.
+const FLAT: &str = r#"<robot name="r"><link name="base"/>
+<link name="one"><inertial><origin xyz="0.5 0 0"/><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="two"><inertial><origin xyz="0.4 0 0"/><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="a" type="revolute"><parent link="base"/><child link="one"/><origin xyz="0 0 0.3"/><axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="100" velocity="5"/></joint>
+<joint name="b" type="revolute"><parent link="one"/><child link="two"/><origin xyz="1 0 0"/><axis xyz="0 -1 0"/><limit lower="-3" upper="3" effort="100" velocity="5"/></joint>
+</robot>"#;
+
+#[test]
+fn regress_a_target_nearer_than_a_folded_arm_of_a_urdf_is_out_of_reach() {
+    let folder = folder();
+    let found = |urdf: &str, target: &str| {
+        fs::write(folder.path().join("flat.urdf"), urdf).unwrap();
+        let text = format!(
+            "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"arm\"\nrobot.urdf.file = \"flat.urdf\"\n\
+             start.position_rad = [0.2, 1.0]\ntarget.formulas = {target}\n[reference.tracking]\n[law.task_space]\n\
+             end_effector = {{ link = \"two\", at_m = [0.8, 0, 0], coordinates = [\"x\", \"z\"] }}\n"
+        );
+        answered(&folder, &text, "target-within-reach").0
+    };
+    // 0.1 m from the first joint, where the arm folded back ends at 0.2 m.
+    assert_eq!(found(FLAT, r#"["0.1*cos(t)", "0.3 + 0.1*sin(t)"]"#), "violated");
+    assert_eq!(found(FLAT, r#"["0.5 + 0.1*cos(t)", "0.3 + 0.1*sin(t)"]"#), "holds");
+    assert_eq!(found(FLAT, r#"["1.9*cos(t)", "0.3"]"#), "violated");
+    // An elbow that turns out of the plane comes nearer in it.
+    let turned = FLAT.replace("<axis xyz=\"0 -1 0\"/>", "<axis xyz=\"0 0 1\"/>");
+    assert_eq!(found(&turned, r#"["0.1*cos(t)", "0.3 + 0.1*sin(t)"]"#), "holds");
+}
+
+#[test]
+fn regress_a_small_slip_in_an_antiderivative_is_found() {
+    let of = |antiderivative: &str| {
+        let robot = r#"chain = { order = 2, regressor = ["0.3*dx"], parameters = [-0.5] }"#;
+        let law = "immersion]\ngain_per_s = 2\nadaptation_gain = 4\nantiderivatives = [\"Φ\"";
+        chains(robot, law).replace('Φ', antiderivative)
+    };
+    for slip in ["0.15*dx^2 + 1e-12*dx^3", "0.15*dx^2 + 1e-14*dx^3", "0.15*dx^2*(1 + 1e-12)"] {
+        let said = refused(&of(slip));
+        assert!(said.contains("the antiderivative of regressor 1 has the slope"), "{slip}: {said}");
+    }
+    for right in ["0.15*dx^2", "0.3*dx^2/2", "dx^2*(0.1 + 0.2)/2 + sin(x)"] {
+        assert_eq!(answer(&of(right), "defined-terms"), "holds", "{right}");
+    }
+}
+
+#[test]
+fn regress_digits_that_would_be_lost_are_refused() {
+    let roots = |own: &str| masses("").replace("[1.0, 2.0]", own);
+    let said = refused(&roots("[1.00000000000000000001, 2.0]"));
+    assert!(said.contains("1.00000000000000000001 has more digits than are computed with"), "{said}");
+    assert!(said.contains("write 1.0"), "{said}");
+    // What programs print for any `f64`, and zeros that say nothing.
+    for fine in [
+        "[0.30000000000000004, 2.0]",
+        "[0.29999999999999999, 2.0]",
+        "[1.000000000000000000000, 200000000000000000000e-20]",
+    ] {
+        assert_eq!(answer(&roots(fine), "real-roots"), "holds", "{fine}");
+    }
+}
+
+#[test]
+fn regress_a_ship_on_the_edge_of_a_singular_inertia_is_refused() {
+    let ship = |inertia: &str| {
+        masses("")
+            .replace(
+                "point_mass = { dimension = 1, mass_kg = 2 }",
+                &format!("ship = {{ inertia = {{ surge_kg = 5, {inertia} }} }}"),
+            )
+            .replace("position_m = [[1.0], [0.0]]", "position = [[1.0, 0, 0], [0.0, 0, 0]]")
+    };
+    // 0.1 · 0.9 is 0.3², which `f64` takes to be more.
+    for singular in
+        ["sway_kg = 0.1, sway_yaw_kg_m = 0.3, yaw_kg_m2 = 0.9", "sway_kg = 4, sway_yaw_kg_m = -2, yaw_kg_m2 = 1"]
+    {
+        let said = refused(&ship(singular));
+        assert!(said.contains("`sway_yaw_kg_m` is") && !said.contains("from -2 to 2"), "{said}");
+    }
+    assert_eq!(answer(&ship("sway_kg = 0.1, sway_yaw_kg_m = 0.29, yaw_kg_m2 = 0.9"), "uniform-inertia"), "holds");
+}
+
+#[test]
+fn regress_a_push_that_is_zero_from_some_time_on_ends() {
+    let pushed = |force: &str| masses(&format!("[[external_wrenches]]\non = [\"m-1\"]\nby.force_n = [{force}]\n"));
+    for ends in ["\"0.1 + 0.2 - 0.3\"", "0", "\"max(0, 5 - t)\"", "\"min(1, max(0, 700 - t))\""] {
+        assert_eq!(answer(&pushed(ends), "pushes-end"), "holds", "{ends}");
+    }
+    for stays in ["1e-300", "\"exp(-t)\"", "\"max(0, sin(t))\"", "\"max(0, t - 50)\""] {
+        assert_eq!(answer(&pushed(stays), "pushes-end"), "not covered by the paper", "{stays}");
+    }
+}
+
+#[test]
+fn regress_a_quaternion_that_grows_is_no_attitude_that_does() {
+    let craft = |target: &str| {
+        let shipped =
+            fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../io/scenarios/theorem-7.toml")).unwrap();
+        shipped.replace("target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}"))
+    };
+    assert_eq!(answer(&craft(r#"[0, 0, "t", 1]"#), "bounded-target"), "not shown");
+    assert_eq!(answer(&craft(r#"[0, 0, "sin(0.1*t)", "cos(0.1*t)"]"#), "bounded-target"), "holds");
+}
+
+#[test]
+fn regress_of_two_times_at_which_a_quaternion_vanishes_the_first_is_told() {
+    let shipped = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../io/scenarios/theorem-7.toml")).unwrap();
+    let of = |target: &str| {
+        let text =
+            shipped.replace("target.formulas = [0, 0, 0, 1]", &format!("target.formulas = [0, 0, 0, \"{target}\"]"));
+        refused(&text.replace("end_s = 60", "end_s = 2000"))
+    };
+    // It is looked at every second: the later time is met, the first lies between two looks.
+    for target in ["(t - 10.3)*(t - 1500)", "(t - 1500)*(t - 10.3)"] {
+        let said = of(target);
+        assert!(said.contains("no attitude at 10.3") || said.contains("no attitude at 10.29"), "{said}");
+    }
+}
+
+#[test]
+fn regress_a_factor_of_the_input_that_is_zero_where_the_run_begins_is_refuted() {
+    let of = |psi: &str| {
+        answer(&chains(&format!("chain = {{ order = 2, psi = \"{psi}\" }}"), "linearising"), "input-factor")
+    };
+    for zero in ["x - x", "x - 1", "0.1 + 0.2 - 0.3 + 0*x", "(x - 1)^2"] {
+        assert_eq!(of(zero), "violated", "{zero}");
+    }
+    assert_eq!((of("x").as_str(), of("2 + sin(x)").as_str()), ("watched during the run", "holds"));
+    let pure = |known: &str, regressor: &str| {
+        let robot = format!(
+            "pure_feedback = {{ known = [\"{known}\", \"0\"], regressors = [[\"{regressor}\"], [\"x1\"]], parameters = [0.4] }}"
+        );
+        answer(&chains(&robot, "adaptive_backstepping"), "input-factor")
+    };
+    assert_eq!(pure("0", "x1^2"), "violated");
+    assert_eq!(pure("x2 + 0.2*x2^3", "x1^2"), "watched during the run");
+    assert_eq!(pure("2*x1", "x2"), "watched during the run");
+}
+
+#[test]
+fn regress_where_no_torque_is_foreseen_no_ratio_to_it_is_printed() {
+    let folder = with(&masses("").replace("[[\"m-1\", \"m-2\"], [\"m-2\", \"m-1\"]]", "[]"));
+    let said = stdout(&forwardstep(&folder, &["check", "--predict", "two.toml"]).code(1));
+    assert!(said.contains("peak torque 0.000 N") && !said.contains("NaN"), "{said}");
+}
