@@ -36,6 +36,10 @@ damping = 3
 error_below = 1e-3
 "#;
 
+/// Its law.
+pub(super) const LAW: &str =
+    "[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3";
+
 #[rustfmt::skip]
 const SPACECRAFT_CASES: &[Case] = &[
     ("[agents.robot.spacecraft]", "[agents.robot.spacecaft]",
@@ -182,9 +186,9 @@ const SPACECRAFT_CASES: &[Case] = &[
         "test.toml:28:11: `damping` of `craft`: the matrix is not positive definite: vᵀ A v = -3 for v = (-2, 1, 0, 0)", ""),
     ("damping = 3", "damping = { bandwidth_per_s = 3 }",
         "test.toml:28:11: found a table where a number, a list (the diagonal) or a list of rows should stand", ""),
-    ("[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3", "[law.thrust]",
+    (LAW, "[law.thrust]",
         "test.toml:24:2: agent `craft`: the law `thrust` is made for vehicles and rotorcraft", "for this robot there is `attitude`"),
-    ("[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3", "[law.adaptive]",
+    (LAW, "[law.adaptive]",
         "test.toml:24:2: agent `craft`: the law `adaptive` is made for arms and point masses", "for this robot there is `attitude`"),
     ("[goal]", "[[external_wrenches]]\non = [\"craft\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
         "test.toml:32:17: `torque_n_m` does not act on `craft`", "what acts on it is `body_torque_n_m`"),
