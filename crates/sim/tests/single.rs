@@ -14,7 +14,7 @@ use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
-use forwardstep_sim::{AttitudeLaw, Ending, Outcome, Signal, TaskSpaceLaw, simulate};
+use forwardstep_sim::{AttitudeLaw, Ending, Outcome, PassivityFilterLaw, Signal, TaskSpaceLaw, simulate};
 
 /// The residual of the balance, and how much of V(0) was lost.
 fn balance(outcome: &Outcome) -> (f64, f64) {
@@ -116,7 +116,7 @@ fn thm6_a_run_ends_when_an_aggressive_gain_drives_the_jacobian_to_singularity() 
 }
 
 /// Against `validation/single`, which shares no form of the equations: the momentum comes from the wheels, and the quaternion
-/// between R and R_z is integrated.
+/// between R and R_z, or R and R_d, is integrated.
 #[test]
 fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
     let mut arm = planar(None, 0.3);
@@ -134,6 +134,14 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
             filter: Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]),
             ..craft.agents[0].law.downcast::<AttitudeLaw>().unwrap().clone()
         });
+        setups.push(craft);
+    }
+    for target in targets().into_iter().take(3) {
+        let mut craft = filtered_craft(half_a_turn([0.1, -0.05, 0.08]), target);
+        assert!(craft.agents[0].change_law(|law: &mut PassivityFilterLaw| {
+            law.damping = Gain::Diagonal(vec![3.0, 2.5, 2.0, 3.5]);
+            law.filter = Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]);
+        }));
         setups.push(craft);
     }
     let truths = truth::read(include_str!("../../../validation/single/single.json"));
