@@ -3,7 +3,8 @@ of forwardstep.
 
 Written from the paper and the corrections to it: dJ_hat/dt holds the rate of the estimate; M d(omega)/dt = S(h) omega + tau with
 tau = -A u for several wheels; wheel momenta are integrated, and h comes from them, where the program's law takes the constant
-h_I. The quaternion between R_z and R is integrated from (106), where the program integrates R_z by (104) and (105).
+h_I. The quaternion between R_z and R is integrated from (106), where the program integrates R_z by (104) and (105). Beside them
+spacecraft under a passivity filter, whose attitude error is integrated, where the program computes it from q and the target.
 Needs nothing but Python. Writes single.json beside itself.
 
     python3 validation/single/generate.py
@@ -111,6 +112,7 @@ M = [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]]
 AXES = [[1.0, 0.0, 0.8], [-1.0, 0.0, 0.8], [0.0, 1.0, 0.8], [0.0, -1.0, 0.8]]
 A = transposed([[x / math.sqrt(sum(y * y for y in axis)) for x in axis] for axis in AXES])
 ALPHA_1, ALPHA_2 = 0.5, 1.2
+K_ERROR = 4.0
 K_4, LAMBDA_F = [3.0, 2.5, 2.0, 3.5], [1.0, 1.2, 0.8, 1.1]
 
 
@@ -172,6 +174,28 @@ def craft(state, t, path):
     return d_q + d_omega + u + dz + d_apart + dy, {"wheel_torque": u, "dz": dz, "dy": dy, "tau": tau}
 
 
+def filtered(state, t, path):
+    """The rate of q, omega, wheel momenta, the quaternion of R_d^T R, y, under a filter of the attitude error."""
+    q, omega, wheels, error, y = state[0:4], state[4:7], state[7:11], state[11:15], state[15:19]
+    _, omega_i, d_omega_i = desired(path, t)
+    back = transposed(rotation(q))
+    omega_d, pull = times(back, omega_i), times(back, d_omega_i)
+    dy = [K_4[k] * error[k] - LAMBDA_F[k] * y[k] for k in range(4)]
+    turn = lambda w: [0.5 * v for v in product(error, w + [0.0])]
+    d_columns = [turn(unit) for unit in ([1.0, 0, 0], [0, 1.0, 0], [0, 0, 1.0])]
+    h = [a + b for a, b in zip(times(M, omega), times(A, wheels))]
+    feed, coupling = times(M, pull), cross(h, omega_d)
+    damped = [sum(column[r] * K_4[r] * dy[r] for r in range(4)) for column in d_columns]
+    tau = [feed[k] - coupling[k] - K_ERROR * error[k] - damped[k] for k in range(3)]
+    square = [[sum(a * b for a, b in zip(p, r)) for r in A] for p in A]
+    u = [-x for x in times(transposed(A), solve_small(square, tau))]
+    gyroscopic = cross(h, omega)
+    d_omega = solve_small(M, [gyroscopic[k] + tau[k] for k in range(3)])
+    d_q = [0.5 * v for v in product(q, omega + [0.0])]
+    d_error = turn([a - b for a, b in zip(omega, omega_d)])
+    return d_q + d_omega + u + d_error + dy, {"wheel_torque": u, "dy": dy, "tau": tau}
+
+
 def case(name, start, samples, step, law, parts):
     field = lambda t, state, middle, past: law(state, t)[0]
     rows, gap = steps.checked(lambda h: steps.solve(field, start, samples, h), step, 1e-8)
@@ -204,6 +228,12 @@ def main():
     samples = [1.0 * k for k in range(1, 25)]
     for name, path in paths.items():
         cases.append(case(name, start, samples, 0.01, lambda state, t, path=path: craft(state, t, path), parts))
+    parts = {"q": (0, 4), "dq": (4, 7), "wheel_momentum": (7, 11)}
+    for name, path in paths.items():
+        error = product(conjugate(desired(path, 0.0)[0]), q)
+        start = q + [0.1, -0.05, 0.08] + [0.3, -0.2, 0.1, 0.4] + error + [K_4[k] / LAMBDA_F[k] * error[k] for k in range(4)]
+        law = lambda state, t, path=path: filtered(state, t, path)
+        cases.append(case("filter, " + name, start, samples, 0.005, law, parts))
     steps.write(HERE / "single.json", cases)
 
 

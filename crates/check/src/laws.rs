@@ -4,21 +4,22 @@ use forwardstep_sim::{AgentSetup, Setup};
 
 use crate::hypothesis::{Evidence, Hypothesis, Id, KindEvidence};
 use crate::kinds::{
-    Chain, Claim, DeclaredKind, KindCheck, LagrangianRobot, PositionOnlyMass, Rotorcraft, Spacecraft, TaskSpaceRobot,
-    Vehicle,
+    Chain, Claim, DeclaredKind, FilteredSpacecraft, KindCheck, LagrangianRobot, PositionOnlyMass, Rotorcraft,
+    Spacecraft, TaskSpaceRobot, Vehicle,
 };
 use crate::theorem::Theorem;
 
 /// All kinds, in the order in which their hypotheses are listed.
-const KINDS: [&dyn KindCheck; 8] = [
-    &PositionOnlyMass, // (a8)
-    &Vehicle,          // Section V-B
-    &Rotorcraft,       // the same with a body
-    &TaskSpaceRobot,   // Theorem 6
-    &Spacecraft,       // Theorem 7
-    &Chain,            // Section IV
-    &LagrangianRobot,  // (6) and (7)
-    &DeclaredKind,     // laws from outside
+const KINDS: [&dyn KindCheck; 9] = [
+    &PositionOnlyMass,   // (a8)
+    &Vehicle,            // Section V-B
+    &Rotorcraft,         // the same with a body
+    &TaskSpaceRobot,     // Theorem 6
+    &Spacecraft,         // Theorem 7
+    &FilteredSpacecraft, // Remark 10
+    &Chain,              // Section IV
+    &LagrangianRobot,    // (6) and (7)
+    &DeclaredKind,       // laws from outside
 ];
 
 /// The kind of an agent; that of a law from outside is what it says of itself.

@@ -69,6 +69,8 @@ pub enum Theorem {
     Theorem6Redundant,
     /// Theorem 7.
     Theorem7,
+    /// A filter of the attitude error in the place of Theorem 7.
+    PassivityFilter,
     /// Theorem 8.
     Theorem8,
     /// (110) over graphs that take turns.
@@ -113,6 +115,7 @@ impl Theorem {
             Theorem::Theorem6Pose => "theorem-6-pose",
             Theorem::Theorem6Redundant => "theorem-6-redundant",
             Theorem::Theorem7 => "theorem-7",
+            Theorem::PassivityFilter => "passivity-filter",
             Theorem::Theorem8 => "theorem-8",
             Theorem::SwitchingLeader => "theorem-8-switching",
             Theorem::LateLeader => "theorem-8-late",
@@ -157,6 +160,7 @@ impl Theorem {
             | Theorem::LateLeader
             | Theorem::Theorem6Pose
             | Theorem::Theorem6Redundant
+            | Theorem::PassivityFilter
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -213,6 +217,9 @@ impl fmt::Display for Theorem {
                 "no theorem of the paper: the argument of Theorem 6 with a null-space term of redundant joints in z_r"
             }
             Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
+            Theorem::PassivityFilter => {
+                "no theorem of the paper: a passivity filter of the attitude error, of the kind that Remark 10 speaks of, as derived for this software"
+            }
             Theorem::Theorem8 => "Theorem 8, reference dynamics (110)",
             Theorem::SwitchingLeader => {
                 "no theorem of the paper: (110) over graphs that take turns as derived for this software"

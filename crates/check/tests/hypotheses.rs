@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 60] = [
+const NAMES: [&str; 62] = [
     "spanning-tree",
     "leader-reaches-all",
     "leader-in-every-graph",
@@ -77,6 +77,8 @@ const NAMES: [&str; 60] = [
     "lengths-within-bounds",
     "attitude-gains",
     "known-momentum",
+    "passivity-filter-gains",
+    "target-at-rest",
     "start-attitude",
     "nonzero-quaternion",
 ];

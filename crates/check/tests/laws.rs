@@ -5,8 +5,8 @@
 mod common;
 
 use common::kinds::{
-    alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, formula, planar_tip, power_of_time, rest_at,
-    spacecraft, tracking, tree_tip, vehicle,
+    alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, filtered_spacecraft, formula, planar_tip,
+    power_of_time, rest_at, spacecraft, tracking, tree_tip, vehicle,
 };
 use common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
@@ -255,6 +255,7 @@ fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
     assert_eq!(needed(&blind_mass(5.0, 0.3), About::Target), 3, "(a9) takes the jerk of its target");
     assert_eq!(needed(&planar_tip(), About::Target), 2);
     assert_eq!(needed(&spacecraft(), About::Target), 2);
+    assert_eq!(needed(&filtered_spacecraft(), About::Target), 2);
     for roots in 1..=4 {
         let mut plant = chain(&Expression::number(1.0), 0, false);
         plant.roots_per_s = vec![1.0; roots].into();

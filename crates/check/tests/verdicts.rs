@@ -11,15 +11,15 @@ mod complex_roots;
 use forwardstep_sim::reference::Backstepping;
 use std::sync::Arc;
 
-use common::kinds::{alone, blind_mass, rest_at, spacecraft, tracking, vehicle};
+use common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
 use common::{About, answer, answers, edge, masses};
 use forwardstep_check::{
-    Answer, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, check, practical, predict,
+    Answer, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
 };
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
-use forwardstep_core::plant::Rotors;
+use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::reference::Choice;
 use forwardstep_core::sampled::SafeCommand;
 use forwardstep_sim::delay::Delay;
@@ -28,7 +28,9 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, ThrustKind, VelocitySensor};
+use forwardstep_sim::{
+    Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, VelocitySensor,
+};
 
 /// Two masses that hear each other through delays of their own.
 fn pair(delays: [Delay; 2]) -> Setup {
@@ -341,6 +343,27 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
     let crests = common::kinds::formula((Expression::variable(0) * rate).cos_of());
     let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
     assert_eq!(said, Answer::Violated, "no look sees it at zero, but between them it is");
+}
+
+#[test]
+fn a_passivity_filter_is_shown_for_what_keeps_still_and_for_equal_moments_of_inertia() {
+    let still = || [0.3, -0.2, 0.1, 1.0].map(rest_at).to_vec();
+    let turning =
+        || vec![rest_at(0.0), common::kinds::formula(Expression::variable(0).sin_of()), rest_at(0.0), rest_at(2.0)];
+    let said = |target, moments: [f64; 3]| {
+        let mut setup = tracking(filtered_spacecraft(), target);
+        let inertia_kg_m2 = std::array::from_fn(|row| std::array::from_fn(|k| if row == k { moments[k] } else { 0.0 }));
+        setup.agents[0].robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: Wheels::orthogonal() });
+        let report = check(&setup);
+        assert_eq!(report.theorem, Theorem::PassivityFilter);
+        let of = |id| report.hypotheses.iter().find(|hypothesis| hypothesis.id == id).map(|one| one.answer());
+        (of(Id::TargetAtRest), of(Id::KnownMomentum))
+    };
+    // Beside a target that keeps still neither M nor h_I is read.
+    assert_eq!(said(still(), [10.0, 8.0, 6.0]), (Some(Answer::Holds), None));
+    assert_eq!(said(turning(), [10.0, 8.0, 6.0]), (Some(Answer::NotShown), Some(Answer::Holds)));
+    assert_eq!(said(turning(), [8.0; 3]), (Some(Answer::Holds), Some(Answer::Holds)));
+    assert_eq!(said(turning(), [8.0, 8.0, 8.001]).0, Some(Answer::NotShown));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use forwardstep::core::Gain;
 use forwardstep::core::reference::WrittenIn;
 use forwardstep::sim::reference::{Desired, DesiredPolynomial, Tracking};
 use std::collections::BTreeSet;
@@ -13,7 +14,7 @@ use forwardstep::core::law::ParameterBounds;
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
-use forwardstep::sim::{Adaptive, Setup, TaskSpaceLaw};
+use forwardstep::sim::{Adaptive, PassivityFilterLaw, Setup, TaskSpaceLaw};
 
 fn shipped(name: &str) -> Setup {
     open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
@@ -56,6 +57,14 @@ fn arm_and_spacecraft() -> Setup {
     setup
 }
 
+/// A spacecraft by a filter of its attitude error.
+fn filtered_spacecraft() -> Setup {
+    let mut setup = shipped("tumbling-target");
+    let [filter, damping] = [1.0, 3.0].map(Gain::Number);
+    setup.agents[0].law = Arc::new(PassivityFilterLaw { error_gain_n_m: 4.0, filter, damping });
+    setup
+}
+
 /// Robots with reference dynamics of different orders.
 fn own_orders() -> Setup {
     let mut setup = shipped("theorem-3-24-order-4");
@@ -82,6 +91,7 @@ fn reports() -> Vec<Report> {
         disturbed_chain(),
         timed_out(),
         arm_and_spacecraft(),
+        filtered_spacecraft(),
         own_orders(),
         desired("desired-dynamics", |desired| desired.heard = vec![1.0]),
     ];
@@ -107,6 +117,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "continuous-thrust",
         "desired-dynamics",
         "mixture",
+        "passivity-filter",
         "position-only-tracks",
         "remark-12",
         "remark-3",

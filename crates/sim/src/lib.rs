@@ -36,8 +36,8 @@ pub mod trajectory;
 
 pub use agents::{
     Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Evaluator, Known, LagrangianRobot,
-    PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, Series, SeriesEvaluator, SpacecraftModel, TaskSpaceLaw,
-    ThrustKind, ThrustLaw, TipSetup, VehicleModel,
+    PassivityFilterLaw, PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, Series, SeriesEvaluator,
+    SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
 };
 pub use build::run;
 pub use closed_loop::{

@@ -62,7 +62,14 @@ fn regress_rows_within_a_step_hear_the_longest_delay() {
         assert_eq!(forgotten(&sampled(setup, 500.0)).unwrap_or_default(), [], "{name}, sampled");
     }
     // Nobody hears anybody, or accelerations are heard at once.
-    let silent = ["chains-tracking", "masses-tracking", "tip-of-a-planar-arm", "tip-of-a-tree", "spacecraft"];
+    let silent = [
+        "chains-tracking",
+        "masses-tracking",
+        "tip-of-a-planar-arm",
+        "tip-of-a-tree",
+        "spacecraft",
+        "passivity-filter",
+    ];
     let at_once = ["following-119", "following-122", "following-as-a-swarm", "following-in-a-layer"];
     assert_eq!(nothing_late, [&silent[..], &at_once].concat());
     let mut followers = following::arms(FollowingDesign::Continuous, Choice::Implicit, 0.8, 4.0);

@@ -12,8 +12,8 @@ use forwardstep_core::controller::Floor;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::{
-    AttitudeLaw, ChainLaw, Law, PositionOnlyLaw, RotorcraftModel, Setup, SetupError, TaskSpaceLaw, ThrustKind,
-    ThrustLaw, VehicleModel, simulate,
+    AttitudeLaw, ChainLaw, Law, PassivityFilterLaw, PositionOnlyLaw, RotorcraftModel, Setup, SetupError, TaskSpaceLaw,
+    ThrustKind, ThrustLaw, VehicleModel, simulate,
 };
 
 /// The path of what is refused, of agent 0.
@@ -94,7 +94,7 @@ fn numbers_of_rotorcraft_are_refused_under_their_keys() {
 #[test]
 fn numbers_of_the_other_laws_are_refused_under_their_keys() {
     let spin = single::half_a_turn([0.1, -0.05, 0.08]);
-    let craft = single::craft(spin, single::targets().swap_remove(2), 1.0);
+    let craft = single::craft(spin.clone(), single::targets().swap_remove(2), 1.0);
     let bounds = |lower: [f64; 2], upper: [f64; 2], margin| {
         let bounds = ParameterBounds::new(lower.to_vec(), upper.to_vec(), margin);
         refused(single::planar(Some(bounds), 0.3), |_| {})
@@ -108,6 +108,9 @@ fn numbers_of_the_other_laws_are_refused_under_their_keys() {
         assert_eq!(mass(&|law| law.adaptation = bad), "agents[0].law.adaptation_gain");
         assert_eq!(law(craft.clone(), |law: &mut AttitudeLaw| law.alpha[0] = bad), "agents[0].law.error_gain_per_s2");
         assert_eq!(law(craft.clone(), |law: &mut AttitudeLaw| law.alpha[1] = bad), "agents[0].law.rate_gain_per_s");
+        let filtered = single::filtered_craft(spin.clone(), single::targets().swap_remove(2));
+        let gain = law(filtered, |law: &mut PassivityFilterLaw| law.error_gain_n_m = bad);
+        assert_eq!(gain, "agents[0].law.error_gain_n_m");
         assert_eq!(tip(&|law| law.kappa = bad), "agents[0].law.torque_share");
         assert_eq!(tip(&|law| law.alpha_per_s = bad), "agents[0].law.reference_gain_per_s");
         assert_eq!(tip(&|law| law.determinant_floor = bad), "agents[0].law.determinant_floor");

@@ -307,6 +307,7 @@ fn controllers_measure_what_their_laws_read_and_nothing_else() {
     let kind = |name: &str| kinds.iter().find(|(kind, _)| *kind == name).unwrap().1.clone();
     let measures = |name: &str| controllers(&kind(name))[0].measures().to_vec();
     assert_eq!(measures("spacecraft"), [(Signal::Position, 4)]);
+    assert_eq!(measures("passivity-filter"), [(Signal::Position, 4)]);
     assert_eq!(measures("masses-tracking").iter().map(|(signal, _)| *signal).collect::<Vec<_>>(), [Signal::Position]);
     let arm = [(Signal::Position, 2), (Signal::Velocity, 2), (Signal::TaskPosition, 2)];
     assert_eq!(measures("tip-of-a-planar-arm"), arm);

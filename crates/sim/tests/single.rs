@@ -7,13 +7,14 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
+use common::single::{anthropomorphic, craft, filtered_craft, half_a_turn, planar, targets};
 use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
+use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
-use forwardstep_sim::{AttitudeLaw, Ending, Outcome, Signal, TaskSpaceLaw, simulate};
+use forwardstep_sim::{AttitudeLaw, Ending, Outcome, PassivityFilterLaw, Signal, TaskSpaceLaw, simulate};
 
 /// The residual of the balance, and how much of V(0) was lost.
 fn balance(outcome: &Outcome) -> (f64, f64) {
@@ -47,6 +48,29 @@ fn thm7_identity_holds_along_real_runs() {
         let angle = column(&outcome, 0, Signal::Angle, 0);
         let (first, last) = (angle[0], *angle.last().unwrap());
         assert!(last < 1e-3 * first, "target {index}: {first} rad to {last} rad");
+    }
+}
+
+/// V of a passivity filter, with the term without a sign where the target turns, and with that of a torque from outside.
+#[test]
+fn prop_what_v_of_a_passivity_filter_loses_is_known_along_real_runs() {
+    for (index, target) in targets().into_iter().enumerate() {
+        for pushed in [false, true] {
+            let mut setup = filtered_craft(half_a_turn([0.1, -0.05, 0.08]), target.clone());
+            if pushed {
+                let torque = [0.2, -0.1, 0.3].map(Function::Constant).to_vec();
+                setup.agents[0].pushes =
+                    vec![Push { effect: Effect::Torque(Course::Each(torque)), from_s: 2.0, until_s: 5.0 }];
+            }
+            let outcome = run(&setup);
+            let (error, lost) = balance(&outcome);
+            assert!(error <= 10.0 * RTOL, "target {index}, pushed {pushed}: {error}");
+            assert!(pushed || lost > 0.9, "target {index} lost {lost}");
+            let dissipation = column(&outcome, 0, Signal::Dissipation, 0);
+            let falls = dissipation.windows(2).all(|pair| pair[1] >= pair[0] - 1e-9);
+            // Where the target keeps still nothing is ever gained.
+            assert!(falls || index > 0 || pushed, "target {index}");
+        }
     }
 }
 
@@ -92,7 +116,7 @@ fn thm6_a_run_ends_when_an_aggressive_gain_drives_the_jacobian_to_singularity() 
 }
 
 /// Against `validation/single`, which shares no form of the equations: the momentum comes from the wheels, and the quaternion
-/// between R and R_z is integrated.
+/// between R and R_z, or R and R_d, is integrated.
 #[test]
 fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
     let mut arm = planar(None, 0.3);
@@ -110,6 +134,14 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
             filter: Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]),
             ..craft.agents[0].law.downcast::<AttitudeLaw>().unwrap().clone()
         });
+        setups.push(craft);
+    }
+    for target in targets().into_iter().take(3) {
+        let mut craft = filtered_craft(half_a_turn([0.1, -0.05, 0.08]), target);
+        assert!(craft.agents[0].change_law(|law: &mut PassivityFilterLaw| {
+            law.damping = Gain::Diagonal(vec![3.0, 2.5, 2.0, 3.5]);
+            law.filter = Gain::Diagonal(vec![1.0, 1.2, 0.8, 1.1]);
+        }));
         setups.push(craft);
     }
     let truths = truth::read(include_str!("../../../validation/single/single.json"));

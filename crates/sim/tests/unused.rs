@@ -75,7 +75,7 @@ fn lagrangian() -> Setup {
 fn roots_are_refused_where_reference_dynamics_have_none() {
     for (name, setup, outcome) in changed(|agent| agent.roots_per_s = vec![1.0; agent.roots_per_s.len().max(1)].into())
     {
-        let rootless = ["tip", "spacecraft", "following"].iter().any(|kind| name.starts_with(kind));
+        let rootless = ["tip", "spacecraft", "passivity", "following"].iter().any(|kind| name.starts_with(kind));
         match outcome {
             Err(SetupError::RootCount { error, .. }) => {
                 assert!(rootless && error.need == 0 && error.got == 1, "{name}")
@@ -197,7 +197,8 @@ fn what_is_said_of_velocities_counts_only_where_they_are_measured() {
                 Err(other) => panic!("{name}: {other}"),
             }
         };
-        let blind = ["masses", "spacecraft", "chains-strict", "chains-pure"].iter().any(|kind| name.starts_with(kind));
+        let kinds = ["masses", "spacecraft", "passivity", "chains-strict", "chains-pure"];
+        let blind = kinds.iter().any(|kind| name.starts_with(kind));
         unmeasured += usize::from(blind);
         let never = |quantity| blind.then_some((quantity, false));
         assert_eq!(with(1e-3, 0.0, false), never(VelocityQuantity::Noise), "{name}");
@@ -208,5 +209,5 @@ fn what_is_said_of_velocities_counts_only_where_they_are_measured() {
             assert_eq!(with(0.0, 1e-3, true), Some((VelocityQuantity::Step, true)), "{name}");
         }
     }
-    assert_eq!(unmeasured, 5);
+    assert_eq!(unmeasured, 6);
 }

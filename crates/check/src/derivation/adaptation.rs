@@ -85,12 +85,13 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
         Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) | Step::Chain(..) | Step::Outside(_) => {
             Vec::new()
         }
-        Step::Attitude(_) => {
+        Step::Attitude(_) | Step::PassivityFilter(_) => {
             let y = Symbol::new("y");
             let filtered = Formula::product([Symbol::new("Λ").below("f").into(), y.clone().into()]);
-            let driven = Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").into()]);
+            let driven = Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above(notation.apart).into()]);
             let left = Formula::sum([(Sign::Plus, y.derivative(1).into()), (Sign::Plus, filtered)]);
-            vec![(Formula::equal(left, driven), "(100)")]
+            let place = if matches!(case.step, Step::Attitude(_)) { "(100)" } else { "" };
+            vec![(Formula::equal(left, driven), place)]
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Attitude tracking, (97)–(108), in which nothing is linear but how ω, z and ω − z enter.
+//! Attitude tracking, (97)–(108), in which nothing is linear but how ω, z and ω − z enter; and the passivity filter beside it, without z.
 
 use num_rational::BigRational;
 
@@ -72,6 +72,12 @@ fn kinematics(mut section: Section) -> Section {
     section
 }
 
+/// Δq̇ = D(Δq) Δω, where a law has no reference attitude.
+pub(super) fn error_rate() -> Form {
+    let delta = Quantity::own(Letter::Deviation).under(Operator::AttitudeMap);
+    Form::own(Combination::of(delta, Polynomial::one()))
+}
+
 /// (108): the derivative of ẏ + Λ_f y = K Δq*, with (106) in it.
 pub(super) fn filter_rate() -> Option<(Form, Form)> {
     let (left, right) = filter();
@@ -130,4 +136,28 @@ pub(super) fn explained(case: &Case<'_>, gains: &[BigRational; 2]) -> Explained 
         ),
     ];
     Explained { agents: case.agents.clone(), order: Some(2), degrees: Some([1, 1]), sections }
+}
+
+/// The explanation of a passivity filter.
+pub(super) fn filtered(case: &Case<'_>, k: &BigRational) -> Explained {
+    let notation = case.notation();
+    let lower = lower::passivity_filter(case.outside(), k);
+    let input = Quantity::own(Letter::Term(lower.input));
+    let mut controller = Section::new(Subject::Controller)
+        .formula(lower.motion(&notation), "(94)")
+        .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "");
+    for (formula, place) in adaptation::of(case, &notation) {
+        controller = controller.formula(formula, place);
+    }
+    let difference = nonlinear(Term::AttitudeDifference);
+    controller = controller
+        .words("Δq is the quaternion of R_dᵀR, and Δω = ω − ω_d. No angular velocity is measured: ẏ stands in for Δω, since")
+        .formula(notation.equation(difference, 1, &error_rate()), "");
+    let cascade = Section::new(Subject::Cascade)
+        .words(
+            "There is no virtual control and no reference velocity, and so no cascade: with ω̇_d = Rᵀω̇_d^I − S(Δω) ω_d the error obeys",
+        )
+        .system(vec![Formula::equal(notation.form(&lower.left), notation.form(&lower.right))], "");
+    let sections = vec![controller, cascade, Section::new(Subject::Convergence).words(words::of_s(case))];
+    Explained { agents: case.agents.clone(), order: None, degrees: None, sections }
 }

@@ -8,8 +8,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::probe::{Counterexample, probe_reference};
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, LinearReference, PureIntegral};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PositionOnlyLaw, Setup,
-    TaskSpaceLaw, ThrustKind, ThrustLaw,
+    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PassivityFilterLaw,
+    PositionOnlyLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
 };
 use num_rational::BigRational;
 
@@ -80,6 +80,8 @@ pub enum Step {
     Thrust(ThrustStep, [BigRational; 2]),
     /// (99).
     Attitude([BigRational; 2]),
+    /// A filter of the attitude error, with its k.
+    PassivityFilter(BigRational),
     /// (80), with κ and α.
     TaskSpace([BigRational; 2]),
     /// (43) for a chain of this order with this gain.
@@ -129,6 +131,8 @@ impl Step {
             Step::Thrust(step, numbers.map(Number::written))
         } else if let Some(law) = agent.law.downcast::<AttitudeLaw>() {
             Step::Attitude(law.alpha.map(Number::written))
+        } else if let Some(law) = agent.law.downcast::<PassivityFilterLaw>() {
+            Step::PassivityFilter(Number::written(law.error_gain_n_m))
         } else if let Some(law) = agent.law.downcast::<TaskSpaceLaw>() {
             Step::TaskSpace([law.kappa, law.alpha_per_s].map(Number::written))
         } else if let (Some(law), Some(model)) =
@@ -151,7 +155,7 @@ impl Step {
     /// k: z follows the (k − 1)-th derivative.
     pub fn plant(&self) -> usize {
         match self {
-            Step::Chain(_, ChainStepKind::Backstepping, _) | Step::Attitude(_) => 1,
+            Step::Chain(_, ChainStepKind::Backstepping, _) | Step::Attitude(_) | Step::PassivityFilter(_) => 1,
             Step::Chain(order, ChainStepKind::Linearising | ChainStepKind::Adaptive | ChainStepKind::Immersion, _) => {
                 *order
             }

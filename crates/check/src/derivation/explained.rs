@@ -35,6 +35,7 @@ impl Case<'_> {
                 self.silent(&format!("{name} comes from outside, so that nothing is known here of what it does to s."))
             }
             (_, Step::Attitude(gains)) => attitude::explained(self, gains),
+            (_, Step::PassivityFilter(k)) => attitude::filtered(self, k),
             (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
                 let Some(dynamics) = self.dynamics() else {
@@ -57,6 +58,7 @@ impl Case<'_> {
             Step::Robot { .. }
             | Step::Thrust(..)
             | Step::Attitude(_)
+            | Step::PassivityFilter(_)
             | Step::TaskSpace(_)
             | Step::Chain(..)
             | Step::Outside(_) => Measured::whole(self.step.plant()),
@@ -100,6 +102,7 @@ impl Case<'_> {
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
             Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
+            Step::PassivityFilter(k) => lower::passivity_filter(self.outside(), k),
             Step::TaskSpace([kappa, _]) => lower::robot(self.outside(), false, Some(kappa)),
             Step::Chain(order, kind, gain) => {
                 let error = match kind {
@@ -118,12 +121,13 @@ impl Case<'_> {
         let position = match self.step {
             Step::Robot { .. } | Step::TaskSpace(_) | Step::Outside(_) => "q",
             Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
-            Step::Attitude(_) => "ω",
+            Step::Attitude(_) | Step::PassivityFilter(_) => "ω",
         };
         let alone = self.setup.agents.len() == 1 || self.is_led_to_target();
         Notation {
             position,
             starred_error: matches!(self.step, Step::Thrust(..)),
+            apart: if matches!(self.step, Step::PassivityFilter(_)) { "" } else { "∗" },
             own: if alone { "" } else { "i" },
             heard: self.heard(),
             weights: self.weights(),

@@ -99,6 +99,8 @@ pub enum Term {
     AttitudeDifference,
     /// K Δq*.
     AttitudeErrorRate,
+    /// M S(Δω) ω_d.
+    GyroscopicPull,
     /// τ_ext, or a force; dry friction is a part of it.
     External,
     /// w, which acts on the last equation of a chain.
@@ -142,7 +144,7 @@ pub enum Operator {
     Filter,
     /// D(q), what the joints of a robot lose.
     Viscous,
-    /// D(Δq*) of (98).
+    /// D(Δq*) of (98), D(Δq) where a law has no reference attitude.
     AttitudeMap,
 }
 

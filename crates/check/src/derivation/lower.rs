@@ -201,6 +201,29 @@ pub fn attitude(outside: Outside) -> Lower {
     lower([motion(Letter::Position), law, outside.acting()], Term::Torque, None, true, [0, 1])
 }
 
+/// (94) under a filter of the attitude error: what is left holds Δω = ω − ω_d, and ω̇_d = Rᵀω̇_d^I − S(Δω) ω_d.
+pub fn passivity_filter(outside: Outside, k: &BigRational) -> Lower {
+    let desired = |term, operator| own(Letter::Term(term), operator, 0);
+    let motion = own(Letter::Position, Operator::Inertia, 1).sum(&minus(&own(Letter::Position, Operator::Momentum, 0)));
+    let law = sum(&[
+        desired(Term::DesiredAcceleration, Operator::Inertia),
+        minus(&desired(Term::DesiredRate, Operator::Momentum)),
+        minus(&times(&term(Term::AttitudeError), k)),
+        minus(&term(Term::AttitudeDamping)),
+    ]);
+    let one = Polynomial::one();
+    let residual = Form::own(motion.sum(&minus(&law)).sum(&minus(&outside.acting())));
+    let rate = Letter::Term(Term::DesiredRate);
+    let residual = residual.with(Letter::Position, &one, &[(Letter::Deviation, one.clone()), (rate, one.clone())]);
+    let pulled = || desired(Term::DesiredAcceleration, Operator::Inertia).sum(&minus(&term(Term::GyroscopicPull)));
+    let carried = Quantity::own(rate).under(Operator::Inertia);
+    let residual = residual.replaced(&Polynomial::power(1), |quantity| (quantity == carried).then(pulled));
+    let left = Form::own(own(Letter::Deviation, Operator::Inertia, 1));
+    let right = left.less(&residual);
+    let [plant, law, outside] = [motion, law, outside.acting()].map(Form::own);
+    Lower { plant, input: Term::Torque, outside, law, left, right, order: 1 }
+}
+
 /// How the second line of (43) is stabilised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChainError {

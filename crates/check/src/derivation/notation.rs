@@ -18,6 +18,8 @@ pub struct Notation {
     pub position: &'static str,
     /// The letter for s: `s`, or `s*` of a vehicle.
     pub starred_error: bool,
+    /// The mark of Δq*, which is Δq where a law has no reference attitude: `∗`, or nothing.
+    pub apart: &'static str,
     /// The index of an agent: `i`, or nothing for one by itself.
     pub own: &'static str,
     /// How late messages are: what is heard is taken at t − T_ij.
@@ -46,7 +48,7 @@ impl Notation {
     /// The k-th derivative of a quantity.
     pub fn quantity(&self, quantity: Quantity, k: usize) -> Formula {
         let inner = self.letter(quantity.letter, quantity.vertex, k);
-        match operator(quantity.operator, self.index(quantity.vertex)) {
+        match self.operator(quantity.operator, self.index(quantity.vertex)) {
             None => inner,
             Some(Operated::Factor(factor)) => Formula::product([factor, inner]),
             Some(Operated::Around(before, after)) => Formula::product([Formula::Function(before, vec![inner]), after]),
@@ -151,12 +153,22 @@ impl Notation {
                 let factors = [Symbol::new("D").above("T"), Symbol::new("K"), Symbol::new("y").derivative(1)];
                 return Formula::product(factors.map(Formula::from));
             }
-            Term::AttitudeDifference => Symbol::new("Δq").above("∗").derivative(k),
+            Term::AttitudeDifference => Symbol::new("Δq").above(self.apart).derivative(k),
+            Term::GyroscopicPull => {
+                let turned = vec![Symbol::new("Δω").into()];
+                let factors = [
+                    Symbol::new("M").into(),
+                    Formula::Function(Symbol::new("S"), turned),
+                    Symbol::new("ω").below("d").into(),
+                ];
+                return Formula::product(factors);
+            }
             Term::External => {
                 Symbol::new("τ").below(if index.is_empty() { "ext".into() } else { format!("ext,{index}") })
             }
             Term::AttitudeErrorRate => {
-                return Formula::product([Symbol::new("K").into(), Symbol::new("Δq").above("∗").derivative(k).into()]);
+                let apart = Symbol::new("Δq").above(self.apart).derivative(k);
+                return Formula::product([Symbol::new("K").into(), apart.into()]);
             }
             Term::Disturbance => symbol("w"),
             Term::Drift => symbol("χ"),
@@ -300,6 +312,28 @@ impl Notation {
         let factor = |factor: Polynomial| Formula::Function(Symbol::new(""), vec![self.polynomial(&factor)]);
         Formula::Product(roots.factors().map(factor).collect())
     }
+
+    /// What is written for an operator.
+    fn operator(&self, operator: Operator, index: &'static str) -> Option<Operated> {
+        let factor = |base| Some(Operated::Factor(Symbol::new(base).below(index).into()));
+        match operator {
+            Operator::Identity => None,
+            Operator::Inertia => factor("M"),
+            Operator::Coriolis => factor("C"),
+            Operator::Damping => factor("K"),
+            Operator::Mass => factor("m"),
+            Operator::Viscous => factor("D"),
+            Operator::AttitudeMap => {
+                let of = vec![Symbol::new("Δq").above(self.apart).into()];
+                Some(Operated::Factor(Formula::Function(Symbol::new("D"), of)))
+            }
+            Operator::Filter => Some(Operated::Factor(Symbol::new("Λ").below("f").into())),
+            Operator::Momentum => {
+                Some(Operated::Factor(Formula::Function(Symbol::new("S"), vec![Symbol::new("h").into()])))
+            }
+            Operator::Gyroscopic => Some(Operated::Around(Symbol::new("S"), Symbol::new("ω").below("d").into())),
+        }
+    }
 }
 
 /// An exponent: there are no more than 32 roots.
@@ -317,25 +351,4 @@ enum Operated {
     Factor(Formula),
     /// As a function, with something behind.
     Around(Symbol, Formula),
-}
-
-fn operator(operator: Operator, index: &'static str) -> Option<Operated> {
-    let factor = |base| Some(Operated::Factor(Symbol::new(base).below(index).into()));
-    match operator {
-        Operator::Identity => None,
-        Operator::Inertia => factor("M"),
-        Operator::Coriolis => factor("C"),
-        Operator::Damping => factor("K"),
-        Operator::Mass => factor("m"),
-        Operator::Viscous => factor("D"),
-        Operator::AttitudeMap => {
-            let of = vec![Symbol::new("Δq").above("∗").into()];
-            Some(Operated::Factor(Formula::Function(Symbol::new("D"), of)))
-        }
-        Operator::Filter => Some(Operated::Factor(Symbol::new("Λ").below("f").into())),
-        Operator::Momentum => {
-            Some(Operated::Factor(Formula::Function(Symbol::new("S"), vec![Symbol::new("h").into()])))
-        }
-        Operator::Gyroscopic => Some(Operated::Around(Symbol::new("S"), Symbol::new("ω").below("d").into())),
-    }
 }

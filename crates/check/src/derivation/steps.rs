@@ -91,6 +91,7 @@ impl Case<'_> {
                 Step::Robot { .. }
                 | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive, _)
                 | Step::Attitude(_)
+                | Step::PassivityFilter(_)
                 | Step::TaskSpace(_)
                 | Step::Outside(_),
             ) => 1,

@@ -103,6 +103,11 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
             "V = ½ (ω − z)ᵀM(ω − z) + ½ ẏᵀẏ has V̇ = −ẏᵀΛ_f ẏ whatever z does, since S(h) is skew-symmetric. So ω − z is bounded, and \
              ẏ is square-integrable; then ÿ → 0, and with it ω − z → 0."
         }
+        Step::PassivityFilter(_) => {
+            "V = ½ ΔωᵀM Δω + 2k (1 − Δq_o) + ½ ẏᵀẏ, with k the gain of Δq_v, has V̇ = −ẏᵀΛ_f ẏ + ΔωᵀM S(Δω) ω_d, since S(h) is \
+             skew-symmetric. The last term is zero where the target keeps still, or where M is a multiple of the identity: ẏ is then \
+             square-integrable, ÿ → 0, and with it Δω → 0 and Δq_v → 0. Elsewhere it has no sign, and nothing is shown."
+        }
         Step::Chain(_, kind, _) => {
             let bounds = if case.is_bounded() { kept(*kind) } else { "" };
             let pushed = if case.is_pushed() { " While something disturbs it, the power s w comes beside that." } else { "" };
@@ -207,7 +212,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         }
         Step::Thrust(..) => "So the variables of the upper subsystem are bounded, and ṡ* vanishes",
         Step::PositionOnly(_) => "So the variables of the upper subsystem are bounded, and y and s vanish",
-        Step::Attitude(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {
+        Step::Attitude(_) | Step::PassivityFilter(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {
             "So the variables of the upper subsystem are bounded, and s vanishes"
         }
     };

@@ -170,6 +170,10 @@ table! {
         "K and Λ_f are symmetric positive definite, α₁ and α₂ are positive";
     KnownMomentum, "known-momentum", "Theorem 7", Source::Paper,
         "the inertia of … and its angular momentum h_I are known and constant";
+    PassivityFilterGains, "passivity-filter-gains", "own derivation", Source::Derived,
+        "K and Λ_f are symmetric positive definite, k is positive";
+    TargetAtRest, "target-at-rest", "own derivation", Source::Derived,
+        "the target of … keeps still, or its moments of inertia are equal";
     StartAttitude, "start-attitude", "own derivation", Source::Derived,
         "the start of … is not half a turn from the attitude of its target";
     NonzeroQuaternion, "nonzero-quaternion", "own derivation", Source::Derived,

@@ -53,7 +53,7 @@ impl KindCheck for Spacecraft {
 }
 
 /// h_I is given to the controller, not measured.
-fn momentum(agent: &AgentSetup) -> KindEvidence {
+pub(super) fn momentum(agent: &AgentSetup) -> KindEvidence {
     if agent.pushes.iter().any(acts) {
         return KindEvidence::MomentumPushed;
     }

@@ -12,8 +12,9 @@ use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, AttitudeLaw, Axis, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, Law, PositionOnlyLaw,
-    Robot, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
+    AgentSetup, AttitudeLaw, Axis, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, Law,
+    PassivityFilterLaw, PositionOnlyLaw, Robot, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, ThrustKind,
+    ThrustLaw, TipSetup, VehicleModel,
 };
 
 use super::{axis, setup};
@@ -169,6 +170,12 @@ pub fn spacecraft() -> AgentSetup {
     let start = start(&[0.0, 0.0, 0.0, 1.0], &[0.0; 3], &[0.0; 3]);
     let kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels });
     agent(kind, Vec::new(), Arc::new(law), start, 4, AxisUnit::One)
+}
+
+/// The same under a filter of the attitude error.
+pub fn filtered_spacecraft() -> AgentSetup {
+    let [filter, damping] = [1.0, 3.0].map(Gain::Number);
+    AgentSetup { law: Arc::new(PassivityFilterLaw { error_gain_n_m: 4.0, filter, damping }), ..spacecraft() }
 }
 
 /// ẍ = φᵀθ + ψ u with one term φ = ẋ, or none, and the factor ψ.

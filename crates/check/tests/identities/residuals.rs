@@ -17,7 +17,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Exchange, Setup, SpacecraftModel, simulate, simulate_moments};
+use forwardstep_sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, SpacecraftModel, simulate, simulate_moments};
 
 use super::families::own_start;
 use crate::common::{arm, edge, kinds, noise, setup};
@@ -226,6 +226,22 @@ fn masses_without_velocity_spacecraft_and_chains_have_identities_of_their_own() 
     let mut slower = craft.clone();
     assert!(slower.agents[0].change_law(|law: &mut forwardstep_sim::AttitudeLaw| law.filter = Gain::Number(1.001)));
     assert_eq!(noticed(&slower, &craft), ["(100)"]);
+
+    // Without z: beside a target that turns, whose ω_d stands in the law and in what is left.
+    let wave = |rate: f64| kinds::formula((Expression::variable(0) * rate).sin_of());
+    let turning = vec![wave(0.7), wave(0.4), kinds::rest_at(0.1), kinds::rest_at(1.0)];
+    let mut filtered = short(kinds::tracking(kinds::filtered_spacecraft(), turning));
+    filtered.agents[0].start.dq = vec![0.2, -0.1, 0.3];
+    filtered.agents[0].start.rest = vec![1.0, -0.5, 0.4];
+    let held = held_against(&filtered, &filtered);
+    assert!(held.len() == 5 && held.iter().all(|one| one.holds() == Some(true)), "{held:?}");
+    let differ = |change: &dyn Fn(&mut PassivityFilterLaw)| {
+        let mut other = filtered.clone();
+        assert!(other.agents[0].change_law(change));
+        held_against(&other, &filtered).iter().filter(|one| one.holds() == Some(false)).count()
+    };
+    assert_eq!(differ(&|law| law.error_gain_n_m *= 1.0 + 1e-6), 2, "the law and what is left");
+    assert_eq!(differ(&|law| law.filter = Gain::Number(1.001)), 1);
 
     // Three wheels whose axes lie in one plane but for a ten-thousandth: what the motors do cancels nearly.
     let wheel = |axis| Wheel { axis, torque_limit_n_m: None, momentum_limit_n_m_s: None };

@@ -124,12 +124,25 @@ const STATE: usize = 11;
 const BEFORE_DY: usize = 10;
 const SHOWN: usize = 17;
 
-fn three(x: &[f64]) -> [f64; 3] {
+pub(super) fn three(x: &[f64]) -> [f64; 3] {
     core::array::from_fn(|k| x[k])
 }
 
-fn four(x: &[f64]) -> [f64; 4] {
+pub(super) fn four(x: &[f64]) -> [f64; 4] {
     core::array::from_fn(|k| x[k])
+}
+
+/// D(Δq)ᵀ g, with S(Δq_v)ᵀ = −S(Δq_v).
+pub(super) fn map_transposed(apart: Quaternion, g: [f64; 4]) -> [f64; 3] {
+    let turn = cross(three(&apart), three(&g));
+    core::array::from_fn(|k| 0.5 * (apart[3] * g[k] - turn[k] - apart[k] * g[3]))
+}
+
+/// The attitude in the output of a spacecraft with so many wheels.
+pub(super) fn see<'a>(wheels: &Wheels, output: &'a [f64]) -> Result<AttitudeMeasured<'a>, LengthError> {
+    LengthError::check("output", 7 + wheels.count(), output.len())?;
+    let short = LengthError { what: "attitude", need: 4, got: output.len() };
+    output.first_chunk().map(|q| AttitudeMeasured { q }).ok_or(short)
 }
 
 /// The start of one part of the state, if it is wanted.
@@ -189,9 +202,7 @@ impl Controller for AttitudeTracking {
     }
 
     fn see<'a>(&self, output: &'a [f64]) -> Result<AttitudeMeasured<'a>, LengthError> {
-        LengthError::check("output", 7 + self.wheels.count(), output.len())?;
-        let short = LengthError { what: "attitude", need: 4, got: output.len() };
-        output.first_chunk().map(|q| AttitudeMeasured { q }).ok_or(short)
+        see(&self.wheels, output)
     }
 
     fn start(
@@ -249,12 +260,10 @@ impl Controller for AttitudeTracking {
         let (apart, dy) = self.filter_rate(q, q_z, &y);
         let mut g = [0.0; 4];
         self.damping.apply(&dy, &mut g);
-        // D(Δq*)ᵀ g, with S(Δq_v*)ᵀ = −S(Δq_v*)
-        let turn = cross(three(&apart), three(&g));
+        let damped = map_transposed(apart, g);
         let inertial = times(&self.inertia, dz);
         let coupling = cross(rotate_back(q, self.momentum_inertial), z);
-        let tau =
-            core::array::from_fn(|k| inertial[k] - coupling[k] - 0.5 * (apart[3] * g[k] - turn[k] - apart[k] * g[3]));
+        let tau = core::array::from_fn(|k| inertial[k] - coupling[k] - damped[k]);
         self.wheels.allocate(tau, asked.input);
 
         asked.d_state[..3].copy_from_slice(&dz);

@@ -12,6 +12,7 @@
 //!   for high orders, and `recursion` takes the faster one.
 //! - `feedback`: any, from closures.
 //! - `guide`: where z leads, for plants of any order.
+//! - `passivity_filter`: a spacecraft by a filter of its attitude error, without reference dynamics, beside Theorem 7.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
@@ -27,6 +28,7 @@ mod interior;
 mod jets;
 mod joint_tracking;
 mod linearising;
+mod passivity_filter;
 mod position_only;
 mod recursion;
 mod stepped;
@@ -45,6 +47,7 @@ pub use immersion::{Immersion, ImmersionWork};
 pub use jets::{Jet, Jets, JetsBuffer};
 pub use joint_tracking::{JointTracking, JointTrackingWork, MotionMeasured};
 pub use linearising::Linearising;
+pub use passivity_filter::PassivityFilter;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;

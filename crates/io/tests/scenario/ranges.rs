@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::chains::{CASCADES, DERIVATIVES};
 use super::mutated::texts;
 use super::read;
-use super::spacecraft::SPACECRAFT;
+use super::spacecraft::{LAW, SPACECRAFT};
 use super::tips::TIP;
 use super::vehicles::VEHICLES;
 
@@ -82,6 +82,8 @@ fn rest() -> Vec<String> {
         (VEHICLES, "inertia_kg_m2 = [0.012, 0.013, 0.022]", "inertia_kg_m2 = 0.01\ngravity_m_s2 = 9.8"),
         (SPACECRAFT, "[[10, 0.5, 0], [0.5, 8, 0], [0, 0, 6]]", "8"),
         (SPACECRAFT, "damping = 3", "damping = [3, 3, 3, 2]"),
+        (SPACECRAFT, LAW, "[law.passivity_filter]\nerror_gain_n_m = 4\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3"),
+        (SPACECRAFT, LAW, "[law.passivity_filter]\nfilter_gain_per_s = 1\ndamping = [3, 3, 3, 2]"),
         (CASCADES, "adaptation_gain = 1", "adaptation_gain = [1, 2]"),
         (TIP, "adaptation_gain.bandwidth_per_s = 10", &format!("adaptation_gain = [{}]", ["1"; 30].join(", "))),
         (TIP, "task_gain = 200", "task_gain = [200, 200, 100]"),

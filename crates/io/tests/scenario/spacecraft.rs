@@ -36,6 +36,10 @@ damping = 3
 error_below = 1e-3
 "#;
 
+/// Its law.
+pub(super) const LAW: &str =
+    "[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3";
+
 #[rustfmt::skip]
 const SPACECRAFT_CASES: &[Case] = &[
     ("[agents.robot.spacecraft]", "[agents.robot.spacecaft]",
@@ -161,7 +165,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[reference.tracking]\n", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []\n",
         "test.toml:22:2: agent `craft`: the law for an attitude follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
     ("[law.attitude]", "[law.atitude]",
-        "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+        "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s2 = 0",
         "test.toml:25:21: `error_gain_per_s2` is 0, but must be positive", ""),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s = 0.5",
@@ -182,10 +186,10 @@ const SPACECRAFT_CASES: &[Case] = &[
         "test.toml:28:11: `damping` of `craft`: the matrix is not positive definite: vᵀ A v = -3 for v = (-2, 1, 0, 0)", ""),
     ("damping = 3", "damping = { bandwidth_per_s = 3 }",
         "test.toml:28:11: found a table where a number, a list (the diagonal) or a list of rows should stand", ""),
-    ("[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3", "[law.thrust]",
-        "test.toml:24:2: agent `craft`: the law `thrust` is made for vehicles and rotorcraft", "for this robot there is `attitude`"),
-    ("[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = [1, 1, 1, 2]\ndamping = 3", "[law.adaptive]",
-        "test.toml:24:2: agent `craft`: the law `adaptive` is made for arms and point masses", "for this robot there is `attitude`"),
+    (LAW, "[law.thrust]",
+        "test.toml:24:2: agent `craft`: the law `thrust` is made for vehicles and rotorcraft", "for this robot there is `attitude` and `passivity_filter`"),
+    (LAW, "[law.adaptive]",
+        "test.toml:24:2: agent `craft`: the law `adaptive` is made for arms and point masses", "for this robot there is `attitude` and `passivity_filter`"),
     ("[goal]", "[[external_wrenches]]\non = [\"craft\"]\nby.torque_n_m = [1, 0, 0]\n[goal]",
         "test.toml:32:17: `torque_n_m` does not act on `craft`", "what acts on it is `body_torque_n_m`"),
     ("[goal]", "[[external_wrenches]]\non = [\"craft\"]\nby.virtual_spring_on_axes = { stiffness = 1, target = [0, 0, 0, 1] }\n[goal]",

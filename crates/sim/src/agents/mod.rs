@@ -25,7 +25,7 @@ pub use lagrangian::{Adaptive, DynamicsAt, Evaluator, Known, LagrangianRobot, Pr
 pub use position_only::PositionOnlyLaw;
 pub use rotorcraft::RotorcraftModel;
 pub use series::{Series, SeriesEvaluator};
-pub use spacecraft::{AttitudeLaw, SpacecraftModel};
+pub use spacecraft::{AttitudeLaw, PassivityFilterLaw, SpacecraftModel};
 pub use task_space::{TaskSpaceLaw, TipSetup};
 pub use thrust::{ThrustKind, ThrustLaw};
 pub use vehicle::VehicleModel;

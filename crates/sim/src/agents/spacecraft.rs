@@ -1,7 +1,8 @@
-//! (94), a spacecraft with reaction wheels, and its attitude without a measured angular velocity: (97)–(105).
+//! (94), a spacecraft with reaction wheels, and its attitude without a measured angular velocity: (97)–(105), and the passivity filter that
+//! Remark 10 compares them with.
 
 use forwardstep_core::Gain;
-use forwardstep_core::controller::AttitudeTracking;
+use forwardstep_core::controller::{AttitudeTracking, PassivityFilter};
 use forwardstep_core::plant::{Spacecraft, Wheels};
 
 use super::LagrangianRobot;
@@ -73,23 +74,69 @@ impl Law for AttitudeLaw {
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
-        let own = assembly.agent();
-        let SpacecraftModel { inertia_kg_m2, wheels } = assembly.robot()?;
-        let path = assembly.of_robot().key("inertia_kg_m2");
-        inertia_kg_m2.iter().enumerate().try_for_each(|(k, row)| positive(path.clone().index(k), "", row[k]))?;
-        assembly.resolved(&Gain::Matrix(inertia_kg_m2.concat()), path, 3, &[])?;
-        let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), own.enforce_limits)
-            .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
+        let (plant, momentum_inertial) = spacecraft(assembly)?;
         positive(assembly.of_law(), "error_gain_per_s2", self.alpha[0])?;
         positive(assembly.of_law(), "rate_gain_per_s", self.alpha[1])?;
-        let start: Vec<f64> = [&own.start.q[..], &own.start.dq, &own.start.rest].concat();
-        let momentum_inertial =
-            plant.momentum_inertial(&start).map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
         let controller = AttitudeTracking {
             inertia: *plant.inertia(),
             momentum_inertial,
-            wheels: wheels.clone(),
+            wheels: plant.wheels().clone(),
             alpha: self.alpha,
+            filter: assembly.gain(&self.filter, "filter_gain_per_s", 4)?,
+            damping: assembly.gain(&self.damping, "damping", 4)?,
+        };
+        assembly.solo(plant, controller)
+    }
+}
+
+/// The spacecraft of an agent, and h_I by its start.
+fn spacecraft(assembly: &Assembly<'_>) -> Result<(Spacecraft, [f64; 3]), SetupError> {
+    let own = assembly.agent();
+    let SpacecraftModel { inertia_kg_m2, wheels } = assembly.robot()?;
+    let path = assembly.of_robot().key("inertia_kg_m2");
+    inertia_kg_m2.iter().enumerate().try_for_each(|(k, row)| positive(path.clone().index(k), "", row[k]))?;
+    assembly.resolved(&Gain::Matrix(inertia_kg_m2.concat()), path, 3, &[])?;
+    let plant = Spacecraft::new(*inertia_kg_m2, wheels.clone(), own.enforce_limits)
+        .map_err(|error| SetupError::Spacecraft { agent: own.name.clone(), error })?;
+    let start: Vec<f64> = [&own.start.q[..], &own.start.dq, &own.start.rest].concat();
+    let momentum_inertial =
+        plant.momentum_inertial(&start).map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+    Ok((plant, momentum_inertial))
+}
+
+/// A filter of the attitude error in the place of reference dynamics; see [`PassivityFilter`]. M and h_I are those of the spacecraft and its start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassivityFilterLaw {
+    /// k, N m.
+    pub error_gain_n_m: f64,
+    /// Λ_f, 4 × 4, 1/s.
+    pub filter: Gain,
+    /// K, 4 × 4.
+    pub damping: Gain,
+}
+
+impl Law for PassivityFilterLaw {
+    fn words(&self) -> LawWords {
+        LawWords { name: "the passivity filter for an attitude", made_for: "spacecraft" }
+    }
+
+    fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
+        let interface = || Interface { pushed: true, ..Interface::of::<PassivityFilter>() };
+        robot.kind.is::<SpacecraftModel>().then(interface)
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let (plant, momentum_inertial) = spacecraft(assembly)?;
+        positive(assembly.of_law(), "error_gain_n_m", self.error_gain_n_m)?;
+        let controller = PassivityFilter {
+            inertia: *plant.inertia(),
+            momentum_inertial,
+            wheels: plant.wheels().clone(),
+            error_gain: self.error_gain_n_m,
             filter: assembly.gain(&self.filter, "filter_gain_per_s", 4)?,
             damping: assembly.gain(&self.damping, "damping", 4)?,
         };

@@ -148,6 +148,10 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("tip-of-a-planar-arm", single::planar(None, 0.3)),
         ("tip-of-a-tree", single::anthropomorphic(Uncertain::Chain)),
         ("spacecraft", single::craft(spin, single::targets().swap_remove(2), 5.0)),
+        (
+            "passivity-filter",
+            single::filtered_craft(single::half_a_turn([0.1, -0.05, 0.08]), single::targets().swap_remove(2)),
+        ),
         ("following-110", arms(FollowingDesign::Continuous, Choice::Implicit)),
         ("following-119", arms(FollowingDesign::Differentiable, Choice::Implicit)),
         ("following-122", arms(FollowingDesign::WithoutAcceleration, Choice::Implicit)),

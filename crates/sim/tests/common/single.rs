@@ -11,7 +11,8 @@ use forwardstep_core::robot::tree::{Follows, JointKind, LinkJoint, LinkPoint, Li
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, TipSetup,
+    AgentSetup, AttitudeLaw, AxisUnit, Law, Method, PassivityFilterLaw, RobotSetup, Setup, SpacecraftModel, Start,
+    TaskSpaceLaw, TipSetup,
 };
 
 use super::{RTOL, axes, fixed, setup, silent, wave};
@@ -129,6 +130,14 @@ pub fn craft(start: Start, target: Vec<Path>, torque_limit_n_m: f64) -> Setup {
     };
     let law = AttitudeLaw { alpha: [0.5, 1.2], filter: Gain::Number(1.0), damping: Gain::Number(3.0) };
     alone(robot, Arc::new(law), start, target, 60.0)
+}
+
+/// The same under a filter of the attitude error.
+pub fn filtered_craft(start: Start, target: Vec<Path>) -> Setup {
+    let mut setup = craft(start, target, 5.0);
+    let [filter, damping] = [1.0, 3.0].map(Gain::Number);
+    setup.agents[0].law = Arc::new(PassivityFilterLaw { error_gain_n_m: 4.0, filter, damping });
+    setup
 }
 
 pub fn half_a_turn(rate: [f64; 3]) -> Start {

@@ -123,6 +123,7 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
     let notation = case.notation();
     match (&case.led, &case.step) {
         (_, Step::Attitude(gains)) => spacecraft(case, gains, &notation),
+        (_, Step::PassivityFilter(k)) => filtered_spacecraft(case, k, notation),
         (_, Step::TaskSpace([kappa, alpha])) => {
             let dynamics = task_space::reference(alpha);
             let mut list = List::new(notation, Frame::of(&dynamics.upper(), case));
@@ -337,15 +338,14 @@ fn continuous(case: &Case<'_>, dynamics: &Dynamics, notation: Notation) -> Vec<I
     list.found
 }
 
+/// ω, which follows z where there is one.
+fn turning(error: Combination) -> Frame {
+    Frame { plant: 1, error, followed: None, letters: [Letter::Position, Letter::Error], integrated: None }
+}
+
 /// (94), (97)–(107).
 fn spacecraft(case: &Case<'_>, gains: &[num_rational::BigRational; 2], notation: &Notation) -> Vec<Identity> {
-    let frame = Frame {
-        plant: 1,
-        error: Combination::of(Quantity::own(Letter::Error), Polynomial::one()),
-        followed: None,
-        letters: [Letter::Position, Letter::Error],
-        integrated: None,
-    };
+    let frame = turning(Combination::of(Quantity::own(Letter::Error), Polynomial::one()));
     let mut list = List::new(notation.clone(), frame);
     let reference = attitude::reference(gains);
     let z = Quantity::own(Letter::Reference);
@@ -359,5 +359,19 @@ fn spacecraft(case: &Case<'_>, gains: &[num_rational::BigRational; 2], notation:
     list.equation(Subject::Controller, (difference, 1), &attitude::difference_rate(), "(106)");
     let delta = Quantity::own(Letter::Deviation);
     list.equation(Subject::Cascade, (delta, 1), &attitude::error(&reference), "(107), first line");
+    in_order(list.found)
+}
+
+/// (94) under a filter of the attitude error: no z, and no s.
+fn filtered_spacecraft(case: &Case<'_>, k: &num_rational::BigRational, notation: Notation) -> Vec<Identity> {
+    // Every derivative of ω has a value of its own.
+    let frame = Frame { plant: 2, ..turning(Combination::default()) };
+    let mut list = List::new(notation.clone(), frame);
+    list.lower(case, &super::super::lower::passivity_filter(case.outside(), k), ["(94)", "", ""]);
+    let (left, right) = attitude::filter();
+    let formula = Formula::equal(notation.form(&left), notation.form(&right));
+    list.equal(Subject::Controller, [&left, &right], (formula, ""));
+    let difference = Quantity::own(Letter::Term(Term::AttitudeDifference));
+    list.equation(Subject::Controller, (difference, 1), &attitude::error_rate(), "");
     in_order(list.found)
 }

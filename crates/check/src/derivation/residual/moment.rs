@@ -126,7 +126,7 @@ impl<'c, 'a> At<'c, 'a> {
     pub(super) fn position(&self, k: usize) -> Result<Vec<f64>, Missing> {
         let higher = (2..).map(Signal::Derivative);
         match self.case.step {
-            Step::Attitude(_) => self.chained([Signal::Velocity].into_iter(), k),
+            Step::Attitude(_) | Step::PassivityFilter(_) => self.chained([Signal::Velocity].into_iter(), k),
             _ => self.chained([Signal::Position, Signal::Velocity].into_iter().chain(higher), k),
         }
     }
@@ -140,7 +140,7 @@ impl<'c, 'a> At<'c, 'a> {
                 let weighed = self.position(2)?.into_iter().zip(self.weight().unwrap_or_default());
                 Ok(weighed.map(|(ddx, weight)| [ddx, ddx.abs() + weight]).collect())
             }
-            Step::Attitude(_) if k == 1 => self.turned_by_wheels(),
+            Step::Attitude(_) | Step::PassivityFilter(_) if k == 1 => self.turned_by_wheels(),
             _ => self.position(k).map(exact),
         }
     }
@@ -362,7 +362,8 @@ impl<'c, 'a> At<'c, 'a> {
                 | Term::AttitudeError
                 | Term::AttitudeDifference
                 | Term::AttitudeDamping
-                | Term::AttitudeErrorRate,
+                | Term::AttitudeErrorRate
+                | Term::GyroscopicPull,
                 _,
             ) => self.spacecraft_term(term, k),
             (
@@ -395,7 +396,7 @@ impl<'c, 'a> At<'c, 'a> {
     /// What acts on the equations of motion.
     fn acting(&self) -> Signal {
         match self.case.step {
-            Step::Attitude(_) => Signal::ExternalTorque,
+            Step::Attitude(_) | Step::PassivityFilter(_) => Signal::ExternalTorque,
             Step::Chain(..) => Signal::Disturbance,
             Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::TaskSpace(_) | Step::Outside(_) => {
                 Signal::External
@@ -425,7 +426,12 @@ impl<'c, 'a> At<'c, 'a> {
         match self.case.step {
             Step::PositionOnly(_) => return self.mass_estimate(),
             Step::Thrust(..) => return self.vehicle_estimate(),
-            Step::Robot { .. } | Step::Attitude(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {}
+            Step::Robot { .. }
+            | Step::Attitude(_)
+            | Step::PassivityFilter(_)
+            | Step::TaskSpace(_)
+            | Step::Chain(..)
+            | Step::Outside(_) => {}
         }
         let rate = exact(self.state(Signal::Estimate, true).ok_or(Missing::Term)?);
         Ok(less(rate, &self.adapted()?))

@@ -181,7 +181,7 @@ impl At<'_, '_> {
 
     /// A vector under a matrix.
     pub(super) fn under(&mut self, operator: Operator, vector: &Vector) -> Result<Vector, Missing> {
-        if let Step::Attitude(_) = self.case.step {
+        if let Step::Attitude(_) | Step::PassivityFilter(_) = self.case.step {
             return self.spacecraft_under(operator, vector);
         }
         if operator == Operator::Mass {

@@ -1,11 +1,12 @@
-//! Spacecraft under (97)–(105): attitudes, momenta and gains at an instant.
+//! Spacecraft under (97)–(105), or under a filter of the attitude error: attitudes, momenta and gains at an instant.
 
 use forwardstep_core::ResolvedGain;
-use forwardstep_core::attitude::{Desired, Quaternion, cross, difference, normalized, rotate_back};
+use forwardstep_core::attitude::{Desired, Quaternion, cross, difference, normalized, rate_inertial, rotate_back};
 use forwardstep_core::controller::Jet;
 use forwardstep_core::plant::{Spacecraft, Wheels};
-use forwardstep_sim::{AgentSetup, AttitudeLaw, Signal, SpacecraftModel};
+use forwardstep_sim::{AgentSetup, AttitudeLaw, PassivityFilterLaw, Signal, SpacecraftModel};
 
+use super::super::case::Step;
 use super::super::form::{Letter, Operator, Term};
 use super::Missing;
 use super::moment::{At, Vector, exact};
@@ -23,7 +24,9 @@ pub(super) struct Craft {
 
 impl Craft {
     pub(super) fn of(agent: &AgentSetup, model: &SpacecraftModel) -> Option<Craft> {
-        let law = agent.law.downcast::<AttitudeLaw>()?;
+        let own = agent.law.downcast().map(|law: &AttitudeLaw| [&law.damping, &law.filter]);
+        let filter = || agent.law.downcast().map(|law: &PassivityFilterLaw| [&law.damping, &law.filter]);
+        let [damping, filter] = own.or_else(filter)?;
         let wheels: Wheels = model.wheels.clone();
         let plant = Spacecraft::new(model.inertia_kg_m2, wheels, false).ok()?;
         let start = &agent.start;
@@ -33,8 +36,8 @@ impl Craft {
             inertia: model.inertia_kg_m2,
             momentum_inertial: plant.momentum_inertial(&state).ok()?,
             plant,
-            damping: law.damping.resolve(4, &[]).ok()?,
-            filter: law.filter.resolve(4, &[]).ok()?,
+            damping: damping.resolve(4, &[]).ok()?,
+            filter: filter.resolve(4, &[]).ok()?,
         })
     }
 }
@@ -77,7 +80,7 @@ fn applied(gain: &ResolvedGain, vector: &Vector) -> Vector {
 struct Attitude {
     q: Quaternion,
     desired: Desired,
-    /// Δq* and its rate.
+    /// Δq* and its rate, or Δq where the law has no reference attitude.
     apart: [Quaternion; 2],
 }
 
@@ -85,14 +88,18 @@ impl At<'_, '_> {
     fn attitude(&self) -> Option<Attitude> {
         let read = |signal, rates| four(&self.state(signal, rates)?);
         let [q, dq] = [read(Signal::Position, false)?, read(Signal::Position, true)?];
-        let [q_z, dq_z] = [read(Signal::ReferenceAttitude, false)?, read(Signal::ReferenceAttitude, true)?];
         let path: [Jet; 4] = self.target()?.first_chunk().copied()?;
+        let desired = Desired::from_path(&path);
+        let [q_z, dq_z] = match self.case.step {
+            Step::PassivityFilter(_) => [desired.q, rate_inertial(desired.q, desired.omega)],
+            _ => [read(Signal::ReferenceAttitude, false)?, read(Signal::ReferenceAttitude, true)?],
+        };
         // Of norm one but for the error of the integration, which the law takes away.
         let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         let [q, dq] = [q, dq].map(|all| all.map(|x| x / norm));
         let (of_q, of_z) = (difference(dq, q_z), difference(q, dq_z));
         let rate = std::array::from_fn(|k| of_q[k] + of_z[k]);
-        Some(Attitude { q, desired: Desired::from_path(&path), apart: [difference(q, q_z), rate] })
+        Some(Attitude { q, desired, apart: [difference(q, q_z), rate] })
     }
 
     fn craft(&mut self) -> Result<&Craft, Missing> {
@@ -139,6 +146,11 @@ impl At<'_, '_> {
                 };
                 Ok((0..3).map(column).collect())
             }
+            (Term::GyroscopicPull, 0) => {
+                let error = self.spacecraft_error(0)?;
+                let turned = self.spacecraft_under(Operator::Gyroscopic, &error)?;
+                self.spacecraft_under(Operator::Inertia, &turned)
+            }
             _ => Err(Missing::Derivative),
         }
     }
@@ -180,13 +192,17 @@ impl At<'_, '_> {
     }
 
     /// S(h) of a letter: the plant has h from its wheels, the law from h_I and the attitude, and they differ by the error of the
-    /// integration. Each is given its own: S(h) s is S(h) ω of the plant less S(h) z of the law.
+    /// integration. Each is given its own: S(h) s is S(h) ω of the plant less S(h) z of the law, or S(h) ω_d where it has no z.
     pub(super) fn turned(&mut self, letter: Letter, k: usize) -> Result<Vector, Missing> {
         if k > 0 {
             return Err(Missing::Derivative);
         }
-        let Attitude { q, .. } = self.attitude().ok_or(Missing::Term)?;
-        let (omega, z) = (exact(self.position(0)?), exact(self.reference(0)?));
+        let Attitude { q, desired, .. } = self.attitude().ok_or(Missing::Term)?;
+        let led = match self.case.step {
+            Step::PassivityFilter(_) => rotate_back(q, desired.omega).to_vec(),
+            _ => self.reference(0)?,
+        };
+        let (omega, z) = (exact(self.position(0)?), exact(led));
         let wheels = self.state(Signal::WheelMomentum, false).unwrap_or_default();
         let state: Vec<f64> = q.iter().copied().chain(values(&omega)).chain(wheels).collect();
         let craft = self.craft()?;
@@ -195,7 +211,7 @@ impl At<'_, '_> {
         let [of_plant, of_law] = [crossed(true_h, &omega), crossed(taken, &z)];
         match letter {
             Letter::Position => of_plant,
-            Letter::Reference => of_law,
+            Letter::Reference | Letter::Term(Term::DesiredRate) => of_law,
             _ => of_plant.zip(of_law).map(|(plant, law)| {
                 plant.iter().zip(&law).map(|(plant, law)| [plant[0] - law[0], plant[1] + law[1]]).collect()
             }),

@@ -202,6 +202,12 @@ pub enum KindEvidence {
     SafeCommand,
     /// The law is for another plant.
     NoSpacecraft,
+    /// The attitude to follow is a constant.
+    TargetStill,
+    /// The inertia is a multiple of the identity.
+    EqualInertia,
+    /// Neither: V̇ of a passivity filter beside wheels holds a term without a sign.
+    TurningTarget,
     /// Disturbances enter the last equation of strict-feedback chains.
     Matched,
     /// A disturbance enters elsewhere, where the slopes of the steps may grow with the state.
@@ -254,6 +260,8 @@ impl KindEvidence {
             | KindEvidence::ParametersInside
             | KindEvidence::AttitudeApart { .. }
             | KindEvidence::Matched
+            | KindEvidence::TargetStill
+            | KindEvidence::EqualInertia
             | KindEvidence::Momentum(_) => Answer::Holds,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
@@ -263,6 +271,7 @@ impl KindEvidence {
             KindEvidence::Declared { .. }
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::TermNotShown { .. }
+            | KindEvidence::TurningTarget
             | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => Answer::NotShown,
             KindEvidence::Mixture(_)
             | KindEvidence::MassNotAdapted { .. }
@@ -315,6 +324,9 @@ impl KindEvidence {
             | KindEvidence::ParametersInside
             | KindEvidence::ParameterOutside { .. }
             | KindEvidence::MomentumPushed
+            | KindEvidence::TargetStill
+            | KindEvidence::EqualInertia
+            | KindEvidence::TurningTarget
             | KindEvidence::Matched
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand

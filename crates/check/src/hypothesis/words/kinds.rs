@@ -140,6 +140,13 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::MomentumPushed => {
             "a torque from outside changes it, and the law goes on with what it was at the start".into()
         }
+        KindEvidence::TargetStill => "it is a constant, so that V̇ = −ẏᵀΛ_f ẏ".into(),
+        KindEvidence::EqualInertia => {
+            "the inertia is a multiple of the identity, so that ΔωᵀM S(Δω) ω_d is zero and V̇ = −ẏᵀΛ_f ẏ".into()
+        }
+        KindEvidence::TurningTarget => {
+            "it may turn, and wheels leave V̇ = −ẏᵀΛ_f ẏ + ΔωᵀM S(Δω) ω_d, whose last term has no sign; a run may diverge".into()
+        }
         KindEvidence::Matched => "they do: the power of what acts is e_n w_n, which leaves V finite".into(),
         KindEvidence::Unmatched { agent } => format!(
             "what disturbs {} enters where the slopes of the steps may grow with the state, so that V may not stay finite",

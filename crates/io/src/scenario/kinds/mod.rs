@@ -119,6 +119,7 @@ impl Kinds {
                 LawEntry::of::<thrust::ThrustFile>(),
                 LawEntry::of::<task_space::TaskSpaceFile>(),
                 LawEntry::of::<spacecraft::AttitudeFile>(),
+                LawEntry::of::<spacecraft::PassivityFilterFile>(),
                 LawEntry::of::<chain::LinearisingFile>(),
                 LawEntry::of::<chain::LinearAdaptiveFile>(),
                 LawEntry::of::<chain::ImmersionFile>(),

@@ -1,11 +1,11 @@
-//! Spacecraft: `robot.spacecraft` and `law.attitude`.
+//! Spacecraft: `robot.spacecraft`, `law.attitude` and `law.passivity_filter`.
 
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
 use forwardstep_core::attitude::{IDENTITY, Quaternion};
 use forwardstep_core::plant::{SpacecraftError, Wheel, Wheels};
-use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, RobotSetup, SpacecraftModel, Start};
+use forwardstep_sim::{AttitudeLaw, AxisUnit, Law, PassivityFilterLaw, RobotSetup, SpacecraftModel, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use thiserror::Error;
@@ -24,6 +24,7 @@ const ERROR_GAIN_PER_S2: f64 = 1.0;
 const RATE_GAIN_PER_S: f64 = 2.0;
 const FILTER_GAIN_PER_S: f64 = 1.0;
 const DAMPING: f64 = 3.0;
+const ERROR_GAIN_N_M: f64 = 4.0;
 
 /// What is wrong with a spacecraft.
 #[derive(Debug, Error)]
@@ -243,6 +244,42 @@ impl LawKind for AttitudeFile {
                 number_or(&self.error_gain_per_s2, ERROR_GAIN_PER_S2),
                 number_or(&self.rate_gain_per_s, RATE_GAIN_PER_S),
             ],
+            filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S)?,
+            damping: gain_or("damping", &self.damping, DAMPING)?,
+        }))
+    }
+}
+
+/// A filter of the attitude error, without angular velocity and without reference dynamics, which Remark 10 of the paper compares Theorem 7 with.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PassivityFilterFile {
+    /// The gain k on the attitude error, in N m. Default: 4.
+    #[schemars(with = "Option<Positive>")]
+    pub error_gain_n_m: Option<At<f64>>,
+    /// The gain Λ_f of the filter, in 1/s: a number, four, or a 4 × 4 matrix. Default: 1.
+    pub filter_gain_per_s: Option<At<GainFile>>,
+    /// The gain K of what stands in for the angular velocity: a number, four, or a 4 × 4 matrix. Default: 3.
+    pub damping: Option<At<GainFile>>,
+}
+
+impl LawKind for PassivityFilterFile {
+    fn table() -> LawTable {
+        LawTable {
+            key: "passivity_filter",
+            description: "A spacecraft follows an attitude by a filter of its error, without reference dynamics, to compare `attitude` with: \
+                          proved for a target that keeps still.",
+            made_for: "spacecraft",
+        }
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.is::<SpacecraftModel>()
+    }
+
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(PassivityFilterLaw {
+            error_gain_n_m: number_or(&self.error_gain_n_m, ERROR_GAIN_N_M),
             filter: gain_or("filter_gain_per_s", &self.filter_gain_per_s, FILTER_GAIN_PER_S)?,
             damping: gain_or("damping", &self.damping, DAMPING)?,
         }))

@@ -100,6 +100,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
             format!("`bounds` that hold {value}, from {} to {}", rounded_down(*value), rounded_up(*value))
         }
         KindEvidence::MomentumPushed => "no torque from outside".into(),
+        KindEvidence::TurningTarget => {
+            "`law.attitude`, whose reference has its own dynamics, or an attitude of four constants".into()
+        }
         KindEvidence::SafeCommand => "no `safe_command`: a run then ends where the law has no value".into(),
         KindEvidence::NoSpacecraft => "`robot.spacecraft`".into(),
         KindEvidence::Unmatched { agent } => format!("what disturbs {} in its last equation alone", agent.name),
@@ -115,6 +118,8 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::PositiveMatricesTrueLengths
         | KindEvidence::ParametersInside
         | KindEvidence::AttitudeApart { .. }
+        | KindEvidence::TargetStill
+        | KindEvidence::EqualInertia
         | KindEvidence::Matched
         | KindEvidence::Momentum(_) => return None,
     })
