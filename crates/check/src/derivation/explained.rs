@@ -36,6 +36,7 @@ impl Case<'_> {
             }
             (_, Step::Attitude(gains)) => attitude::explained(self, gains),
             (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
+            (_, Step::TipVelocity([kappa, alpha])) => task_space::by_velocity(self, kappa, alpha),
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
                 let Some(dynamics) = self.dynamics() else {
                     return self.silent("Its reference dynamics have too few roots for its plant.");
@@ -58,6 +59,7 @@ impl Case<'_> {
             | Step::Thrust(..)
             | Step::Attitude(_)
             | Step::TaskSpace(_)
+            | Step::TipVelocity(_)
             | Step::Chain(..)
             | Step::Outside(_) => Measured::whole(self.step.plant()),
         }
@@ -100,7 +102,9 @@ impl Case<'_> {
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
             Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
-            Step::TaskSpace([kappa, _]) => lower::robot(self.outside(), false, Some(kappa)),
+            Step::TaskSpace([kappa, _]) | Step::TipVelocity([kappa, _]) => {
+                lower::robot(self.outside(), false, Some(kappa))
+            }
             Step::Chain(order, kind, gain) => {
                 let error = match kind {
                     ChainStepKind::Backstepping => return None,
@@ -116,7 +120,7 @@ impl Case<'_> {
     /// How its quantities are written.
     pub fn notation(&self) -> Notation {
         let position = match self.step {
-            Step::Robot { .. } | Step::TaskSpace(_) | Step::Outside(_) => "q",
+            Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::Outside(_) => "q",
             Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
             Step::Attitude(_) => "ω",
         };

@@ -163,6 +163,6 @@ fn own_step(case: &Case<'_>, order: usize, places: Places) -> Places {
             reduced: "",
             ..places
         },
-        Step::Attitude(_) | Step::TaskSpace(_) | Step::Outside(_) => places,
+        Step::Attitude(_) | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::Outside(_) => places,
     }
 }

@@ -92,6 +92,7 @@ impl Case<'_> {
                 | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive, _)
                 | Step::Attitude(_)
                 | Step::TaskSpace(_)
+                | Step::TipVelocity(_)
                 | Step::Outside(_),
             ) => 1,
         }
