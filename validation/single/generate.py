@@ -1,4 +1,4 @@
-"""A tip with uncertain link lengths, (76) to (82), and spacecraft without angular velocity, (97) to (105), computed without any part
+"""A tip with uncertain link lengths, (76) to (82), or by its measured velocity, and spacecraft without angular velocity, (97) to (105), computed without any part
 of forwardstep.
 
 Written from the paper and the corrections to it: dJ_hat/dt holds the rate of the estimate; M d(omega)/dt = S(h) omega + tau with
@@ -107,6 +107,31 @@ def arm(state, t):
     return dq + ddq + dz + d_dynamic + d_lengths, {"tau": tau, "x": x, "dz": dz}
 
 
+def watched_arm(state, t):
+    """The same where the velocity of the tip is measured, and z is a function: the rate of q, q', the estimates."""
+    q, dq, dynamic, lengths = state[0:2], state[2:4], state[4:9], state[9:11]
+    a, b = LENGTHS
+    x = [a * math.cos(q[0]) + b * math.cos(q[0] + q[1]), a * math.sin(q[0]) + b * math.sin(q[0] + q[1])]
+    dx, x_d = times(jacobian(q, LENGTHS), dq), [path(t) for path in CIRCLE]
+    off = [x[k] - x_d[k][0] for k in range(2)]
+    pull = times(K_STAR, off)
+    z_t = [times(jacobian(q, unit), dq) for unit in ([1.0, 0.0], [0.0, 1.0])]
+    d_lengths = [LAMBDA[k] * sum(u * v for u, v in zip(z_t[k], pull)) for k in range(2)]
+    j, dj = jacobian(q, lengths), jacobian_rate(q, dq, lengths, d_lengths)
+    z = solve_small(j, [x_d[k][1] - ALPHA * off[k] for k in range(2)])
+    behind = times(dj, z)
+    dz = solve_small(j, [x_d[k][2] - ALPHA * (dx[k] - x_d[k][1]) - behind[k] for k in range(2)])
+    s, j_pull = [dq[k] - z[k] for k in range(2)], times(transposed(j), pull)
+    y = regressor(q, dq, z, dz)
+    model = times(y, dynamic)
+    tau = [-K * s[k] - KAPPA * j_pull[k] + model[k] for k in range(2)]
+    d_dynamic = [-GAMMA * sum(y[k][p] * s[k] for k in range(2)) for p in range(5)]
+    c2, still = math.cos(q[1]), times(regressor(q, dq, dq, [0.0, 0.0]), THETA)
+    m = [[THETA[0] + 2 * THETA[2] * c2, THETA[1] + THETA[2] * c2], [THETA[1] + THETA[2] * c2, THETA[1]]]
+    ddq = solve_small(m, [tau[k] - still[k] for k in range(2)])
+    return dq + ddq + d_dynamic + d_lengths, {"tau": tau, "x": x, "dx": dx, "z": z, "dz": dz}
+
+
 # The spacecraft.
 M = [[10.0, 0.5, -0.3], [0.5, 8.0, 0.2], [-0.3, 0.2, 6.0]]
 AXES = [[1.0, 0.0, 0.8], [-1.0, 0.0, 0.8], [0.0, 1.0, 0.8], [0.0, -1.0, 0.8]]
@@ -212,6 +237,10 @@ def main():
     parts = {"q": (0, 2), "dq": (2, 4), "z": (4, 6), "theta_hat": (6, 11), "kinematic_hat": (11, 13)}
     cases = [case("tip", start, samples, 0.0002, arm, parts)]
 
+    start = [0.2, 1.4, 0.1, -0.2] + [0.0] * 5 + [1.2, 0.96]
+    parts = {"q": (0, 2), "dq": (2, 4), "theta_hat": (4, 9), "kinematic_hat": (9, 11)}
+    watched = case("tip by its velocity", start, samples, 0.0002, watched_arm, parts)
+
     half, wide = math.radians(179.9) / 2, math.sqrt(6.0)
     q = [x / wide * math.sin(half) for x in (1.0, 2.0, -1.0)] + [math.cos(half)]
     start = q + [0.1, -0.05, 0.08] + [0.3, -0.2, 0.1, 0.4] + [0.0] * 3 + [0.0, 0.0, 0.0, 1.0]
@@ -234,6 +263,7 @@ def main():
         start = q + [0.1, -0.05, 0.08] + [0.3, -0.2, 0.1, 0.4] + error + [K_4[k] / LAMBDA_F[k] * error[k] for k in range(4)]
         law = lambda state, t, path=path: filtered(state, t, path)
         cases.append(case("filter, " + name, start, samples, 0.005, law, parts))
+    cases.append(watched)
     steps.write(HERE / "single.json", cases)
 
 

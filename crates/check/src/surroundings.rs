@@ -128,7 +128,10 @@ fn digital(setup: &Setup) -> Vec<Hypothesis> {
         LoopEvidence::Sampling { sample_hz: control.sample_hz, computation_delay_s: control.computation_delay_s };
     let mut hypotheses = vec![Hypothesis::new(Id::ContinuousTime, sampling)];
     let each = [
-        (sensors.position_noise > 0.0 || sensors.velocity_noise > 0.0, Inexact::Noise),
+        (
+            sensors.position_noise > 0.0 || sensors.velocity_noise > 0.0 || sensors.tip_velocity_noise > 0.0,
+            Inexact::Noise,
+        ),
         (sensors.position_quantum > 0.0 || sensors.velocity_quantum > 0.0, Inexact::Quantum),
         (filtered, Inexact::Filter),
     ];

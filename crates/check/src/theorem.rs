@@ -67,6 +67,8 @@ pub enum Theorem {
     Theorem6Pose,
     /// The argument of Theorem 6 with a null-space term of redundant joints.
     Theorem6Redundant,
+    /// Tips by their measured velocity, as Remark 9 names for contrast.
+    TipVelocity,
     /// Theorem 7.
     Theorem7,
     /// A filter of the attitude error in the place of Theorem 7.
@@ -114,6 +116,7 @@ impl Theorem {
             Theorem::Theorem6 => "theorem-6",
             Theorem::Theorem6Pose => "theorem-6-pose",
             Theorem::Theorem6Redundant => "theorem-6-redundant",
+            Theorem::TipVelocity => "tip-velocity",
             Theorem::Theorem7 => "theorem-7",
             Theorem::PassivityFilter => "passivity-filter",
             Theorem::Theorem8 => "theorem-8",
@@ -161,6 +164,7 @@ impl Theorem {
             | Theorem::Theorem6Pose
             | Theorem::Theorem6Redundant
             | Theorem::PassivityFilter
+            | Theorem::TipVelocity
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -215,6 +219,9 @@ impl fmt::Display for Theorem {
             }
             Theorem::Theorem6Redundant => {
                 "no theorem of the paper: the argument of Theorem 6 with a null-space term of redundant joints in z_r"
+            }
+            Theorem::TipVelocity => {
+                "no theorem of the paper: a tip by its measured velocity, in the manner of what Remark 9 compares Theorem 6 with"
             }
             Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
             Theorem::PassivityFilter => {

@@ -66,6 +66,8 @@ pub enum Signal {
     WheelMomentum,
     /// x, the position of a tip in task space.
     TaskPosition,
+    /// ẋ, the measured velocity of a tip; only of laws that measure it.
+    TaskVelocity,
     /// θ̂, the estimate of kinematic parameters, an entry each.
     KinematicEstimate,
     /// det Ĵ of the estimated Jacobian. One entry.
@@ -237,6 +239,7 @@ impl Signal {
             Signal::WheelTorque => Row::new("wheel_torque", Fixed("N m"), Numbered("wheel"), card("Torques of the wheels", "u, after any limit")).jumps(),
             Signal::WheelMomentum => Row::new("wheel_momentum", Fixed("N m s"), Numbered("wheel"), card("Momenta of the wheels", "h_w")),
             Signal::TaskPosition => Row::new("x", Fixed("m"), Coordinates, card("Position of the tip", "x")),
+            Signal::TaskVelocity => Row::new("dx", Fixed("m/s"), Coordinates, card("Measured velocity of the tip", "ẋ")).jumps(),
             Signal::KinematicEstimate => Row::new("kinematic_hat", Fixed("m"), CoordinateParameters, card("Estimated lengths", "θ̂")),
             Signal::Determinant => Row::new("det_jacobian", Volume, One, card("Regularity of the estimated Jacobian", "det Ĵ")),
             Signal::SingularValue => Row::new("sigma_min_jacobian", Fixed("SI"), One, card("Regularity of the estimated Jacobian", "smallest singular value of Ĵ")),

@@ -28,6 +28,32 @@ fn bounded_lengths(upper: f64) -> Setup {
     setup
 }
 
+/// An arm the velocity of whose tip is measured.
+fn by_velocity() -> Setup {
+    let mut setup = shipped("theorem-6");
+    assert!(setup.agents[0].change_law(|law: &mut TaskSpaceLaw| law.by_velocity = true));
+    setup
+}
+
+/// Its verdict is that of Theorem 6 but for whose it is: the proof asks for the same.
+#[test]
+fn own_a_tip_by_its_velocity_asks_for_what_theorem_6_does_and_is_not_of_the_paper() {
+    let (measured, integrated) = (check(&by_velocity()), check(&shipped("theorem-6")));
+    let asked = |report: &Report| -> Vec<(Id, Answer)> {
+        report.hypotheses.iter().map(|hypothesis| (hypothesis.id, hypothesis.answer())).collect()
+    };
+    assert_eq!(asked(&measured), asked(&integrated));
+    assert_eq!(measured.theorem.source(), forwardstep::check::Source::Derived);
+    assert!(measured.theorem.to_string().starts_with("no theorem of the paper"), "{}", measured.theorem);
+    assert!(measured.promises.contains("by a measured dx"), "{}", measured.promises);
+    // Beside an arm under Theorem 6 the promise names both.
+    let mut both = by_velocity();
+    both.agents.extend(shipped("theorem-6").agents);
+    let both = check(&both);
+    assert_eq!(both.theorem, measured.theorem);
+    assert!(both.promises.ends_with("as of Theorem 6"), "{}", both.promises);
+}
+
 /// Chains that would follow targets of their own.
 fn tracking_chains() -> Setup {
     let mut setup = shipped("framework");
@@ -93,6 +119,7 @@ fn reports() -> Vec<Report> {
         arm_and_spacecraft(),
         filtered_spacecraft(),
         own_orders(),
+        by_velocity(),
         desired("desired-dynamics", |desired| desired.heard = vec![1.0]),
     ];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
@@ -141,6 +168,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "theorem-8-late",
         "theorem-8-switching",
         "theorem-9",
+        "tip-velocity",
     ];
     assert_eq!(theorems, names.into());
     for hypothesis in hypotheses() {

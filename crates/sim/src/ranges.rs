@@ -99,6 +99,7 @@ impl Control {
         }
         not_negative("control", "noise.position", sensors.position_noise)?;
         not_negative("control", "noise.velocity", sensors.velocity_noise)?;
+        not_negative("control", "noise.tip_velocity", sensors.tip_velocity_noise)?;
         not_negative("control", "quantisation.position", sensors.position_quantum)?;
         not_negative("control", "quantisation.velocity", sensors.velocity_quantum)?;
         not_negative("control", "quantisation.torque", actuators.torque_quantum)

@@ -288,6 +288,8 @@ pub struct Sensors {
     pub position_noise: f64,
     /// Standard deviation of the noise of velocities, rad/s or m/s; not used with [`VelocitySensor::Filtered`].
     pub velocity_noise: f64,
+    /// Standard deviation of the noise of the velocities of tips, m/s, where a law measures them.
+    pub tip_velocity_noise: f64,
     /// Seed of the noise; every agent has a stream of its own.
     pub seed: u64,
     /// Step of the positions, rad or m; zero for none.
@@ -303,6 +305,7 @@ impl Default for Sensors {
             velocity: VelocitySensor::Measured,
             position_noise: 0.0,
             velocity_noise: 0.0,
+            tip_velocity_noise: 0.0,
             seed: 0,
             position_quantum: 0.0,
             velocity_quantum: 0.0,

@@ -315,6 +315,7 @@ fn thm6_v_balances_for_a_tip_of_an_arm_with_drives_smooth_or_dry() {
         let tip = TipSetup::Planar(PlanarTip { length_m: [1.0, 0.8] });
         agent.law = Arc::new(TaskSpaceLaw {
             tip,
+            by_velocity: false,
             damping: Gain::Number(8.0),
             adaptation: Gain::Number(4.0),
             estimate_start: agent.robot.theta.iter().map(|own| 0.5 * own).collect(),

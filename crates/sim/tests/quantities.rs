@@ -88,6 +88,7 @@ fn every_quantity_is_refused_out_of_its_range_under_its_path() {
             (&controlled(|c| c.failures.message_timeout_s = Some(value)), "control.message_timeout_s"),
             (&controlled(|c| c.sensors.position_noise = value), "control.noise.position"),
             (&controlled(|c| c.sensors.velocity_noise = value), "control.noise.velocity"),
+            (&controlled(|c| c.sensors.tip_velocity_noise = value), "control.noise.tip_velocity"),
             (&controlled(|c| c.sensors.position_quantum = value), "control.quantisation.position"),
             (&controlled(|c| c.sensors.velocity_quantum = value), "control.quantisation.velocity"),
             (&controlled(|c| c.actuators.torque_quantum = value), "control.quantisation.torque"),

@@ -14,7 +14,7 @@ use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::recording::{Breakdown, BreakdownCause};
-use forwardstep_sim::{AttitudeLaw, Ending, Outcome, PassivityFilterLaw, Signal, TaskSpaceLaw, simulate};
+use forwardstep_sim::{AttitudeLaw, Ending, Outcome, PassivityFilterLaw, Setup, Signal, TaskSpaceLaw, simulate};
 
 /// The residual of the balance, and how much of V(0) was lost.
 fn balance(outcome: &Outcome) -> (f64, f64) {
@@ -36,6 +36,62 @@ fn thm6_identity_holds_along_real_runs() {
         assert!(error <= 10.0 * RTOL, "run {index}: {error}");
         assert!(lost > 0.01, "run {index} lost {lost}");
     }
+}
+
+/// By a measured velocity of the tip, which no theorem of the paper does; z is a function, and V has no |z − z_r|².
+#[test]
+fn own_identity_holds_along_real_runs_by_a_measured_velocity_of_the_tip() {
+    let bounds = ParameterBounds::new(vec![0.9, 0.7], vec![1.1, 0.9], 0.2);
+    let runs = [
+        planar(None, 0.3),
+        planar(Some(bounds), 0.3),
+        anthropomorphic(Uncertain::Tool),
+        anthropomorphic(Uncertain::Chain),
+    ];
+    for (index, setup) in runs.into_iter().enumerate() {
+        let mut setup = by_velocity(setup);
+        let outcome = run(&setup);
+        let (error, lost) = balance(&outcome);
+        assert!(error <= 10.0 * RTOL, "run {index}: {error}");
+        assert!(lost > 0.01, "run {index} lost {lost}");
+        // What is measured is the rate of x, and z is shown though it is no state.
+        (setup.time.record_every_s, setup.time.end_s) = (1e-3, 1.0);
+        let outcome = run(&setup);
+        let [x, dx] = [Signal::TaskPosition, Signal::TaskVelocity].map(|signal| column(&outcome, 0, signal, 0));
+        for k in (1..x.len() - 1).step_by(50) {
+            let slope = (x[k + 1] - x[k - 1]) / 2e-3;
+            assert!((slope - dx[k]).abs() < 5e-3, "run {index}: {slope} against {}", dx[k]);
+        }
+        assert!(outcome.recording.columns.iter().any(|column| column.signal == Signal::Reference(0)));
+    }
+}
+
+fn by_velocity(mut setup: Setup) -> Setup {
+    assert!(setup.agents[0].change_law(|law: &mut TaskSpaceLaw| law.by_velocity = true));
+    setup
+}
+
+/// Noise of ẋ is a torque at once; of Theorem 6, which reads no ẋ, such noise is refused.
+#[test]
+fn own_noise_of_the_velocity_of_a_tip_reaches_the_torque() {
+    let noisy = |noise: f64| {
+        let mut setup = sampled(by_velocity(planar(None, 0.3)), 500.0);
+        setup.time.end_s = 4.0;
+        setup.control.as_mut().unwrap().sensors.tip_velocity_noise = noise;
+        let outcome = run(&setup);
+        // Behind the transient of the start.
+        let torque = column(&outcome, 0, Signal::Torque, 0);
+        torque[3 * torque.len() / 4..].windows(2).map(|pair| (pair[1] - pair[0]) * (pair[1] - pair[0])).sum::<f64>()
+    };
+    let (exact, little, much) = (noisy(0.0), noisy(0.01), noisy(0.1));
+    assert!(little > 1.5 * exact && much > 20.0 * little, "{exact} {little} {much}");
+    let mut setup = sampled(planar(None, 0.3), 500.0);
+    setup.control.as_mut().unwrap().sensors.tip_velocity_noise = 0.01;
+    let refused = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the noise of the velocities of tips is 0.01, but no law measures the velocity of a tip"
+    );
 }
 
 #[test]
@@ -87,7 +143,8 @@ fn thm7_from_rest_the_reference_is_followed_exactly() {
 fn prop_sampled_systems_come_closer_to_continuous_ones_in_proportion_to_the_period() {
     let mut craft = craft(half_a_turn([0.1, -0.05, 0.08]), targets().swap_remove(1), 5.0);
     let mut arm = planar(None, 0.3);
-    for setup in [&mut craft, &mut arm] {
+    let mut watched = by_velocity(arm.clone());
+    for setup in [&mut craft, &mut arm, &mut watched] {
         setup.time.end_s = 3.0;
         assert_first_order(setup, 200.0);
     }
@@ -125,6 +182,7 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
         kinematic_adaptation: Some(Gain::Diagonal(vec![0.3, 0.4])),
         ..arm.agents[0].law.downcast::<TaskSpaceLaw>().unwrap().clone()
     });
+    let watched = by_velocity(arm.clone());
     let mut setups = vec![arm];
     // The fourth target goes through points of a table, whose curve is no formula.
     for target in targets().into_iter().take(3) {
@@ -144,6 +202,7 @@ fn val_tips_and_spacecraft_agree_with_an_independent_solver() {
         }));
         setups.push(craft);
     }
+    setups.push(watched);
     let truths = truth::read(include_str!("../../../validation/single/single.json"));
     assert_eq!(truths.len(), setups.len());
     for (truth, setup) in truths.iter().zip(setups) {

@@ -49,7 +49,7 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
     match &case.step {
         Step::Robot { known: false } => vec![robot("(7)")],
         Step::Robot { known: true } => Vec::new(),
-        Step::TaskSpace(_) => {
+        Step::TaskSpace(_) | Step::TipVelocity(_) => {
             let (law, place) = kinematic();
             vec![robot("(81)"), (if case.has_bounded_lengths() { projected(law) } else { law }, place)]
         }

@@ -84,6 +84,8 @@ pub enum Step {
     PassivityFilter(BigRational),
     /// (80), with κ and α.
     TaskSpace([BigRational; 2]),
+    /// The same with a measured velocity of the tip.
+    TipVelocity([BigRational; 2]),
     /// (43) for a chain of this order with this gain.
     Chain(usize, ChainStepKind, BigRational),
     /// A law from outside.
@@ -134,7 +136,8 @@ impl Step {
         } else if let Some(law) = agent.law.downcast::<PassivityFilterLaw>() {
             Step::PassivityFilter(Number::written(law.error_gain_n_m))
         } else if let Some(law) = agent.law.downcast::<TaskSpaceLaw>() {
-            Step::TaskSpace([law.kappa, law.alpha_per_s].map(Number::written))
+            let numbers = [law.kappa, law.alpha_per_s].map(Number::written);
+            if law.by_velocity { Step::TipVelocity(numbers) } else { Step::TaskSpace(numbers) }
         } else if let (Some(law), Some(model)) =
             (agent.law.downcast::<ChainLaw>(), agent.robot.kind.downcast::<ChainModel>())
         {
@@ -159,7 +162,12 @@ impl Step {
             Step::Chain(order, ChainStepKind::Linearising | ChainStepKind::Adaptive | ChainStepKind::Immersion, _) => {
                 *order
             }
-            Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::TaskSpace(_) | Step::Outside(_) => 2,
+            Step::Robot { .. }
+            | Step::PositionOnly(_)
+            | Step::Thrust(..)
+            | Step::TaskSpace(_)
+            | Step::TipVelocity(_)
+            | Step::Outside(_) => 2,
         }
     }
 }

@@ -37,6 +37,7 @@ impl Case<'_> {
             (_, Step::Attitude(gains)) => attitude::explained(self, gains),
             (_, Step::PassivityFilter(k)) => attitude::filtered(self, k),
             (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
+            (_, Step::TipVelocity([kappa, alpha])) => task_space::by_velocity(self, kappa, alpha),
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
                 let Some(dynamics) = self.dynamics() else {
                     return self.silent("Its reference dynamics have too few roots for its plant.");
@@ -60,6 +61,7 @@ impl Case<'_> {
             | Step::Attitude(_)
             | Step::PassivityFilter(_)
             | Step::TaskSpace(_)
+            | Step::TipVelocity(_)
             | Step::Chain(..)
             | Step::Outside(_) => Measured::whole(self.step.plant()),
         }
@@ -103,7 +105,9 @@ impl Case<'_> {
             Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
             Step::PassivityFilter(k) => lower::passivity_filter(self.outside(), k),
-            Step::TaskSpace([kappa, _]) => lower::robot(self.outside(), false, Some(kappa)),
+            Step::TaskSpace([kappa, _]) | Step::TipVelocity([kappa, _]) => {
+                lower::robot(self.outside(), false, Some(kappa))
+            }
             Step::Chain(order, kind, gain) => {
                 let error = match kind {
                     ChainStepKind::Backstepping => return None,
@@ -119,7 +123,7 @@ impl Case<'_> {
     /// How its quantities are written.
     pub fn notation(&self) -> Notation {
         let position = match self.step {
-            Step::Robot { .. } | Step::TaskSpace(_) | Step::Outside(_) => "q",
+            Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::Outside(_) => "q",
             Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
             Step::Attitude(_) | Step::PassivityFilter(_) => "ω",
         };

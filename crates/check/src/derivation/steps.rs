@@ -93,6 +93,7 @@ impl Case<'_> {
                 | Step::Attitude(_)
                 | Step::PassivityFilter(_)
                 | Step::TaskSpace(_)
+                | Step::TipVelocity(_)
                 | Step::Outside(_),
             ) => 1,
         }

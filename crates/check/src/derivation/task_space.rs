@@ -1,4 +1,4 @@
-//! The end-effector of a robot, (76)–(82), in which Ĵᵀ K* Δx and z_r stand for themselves.
+//! The end-effector of a robot, (76)–(82), in which Ĵᵀ K* Δx and z_r stand for themselves; and the same with a measured velocity of the tip.
 
 use forwardstep_core::robot::tree::Follows;
 use forwardstep_sim::TaskSpaceLaw;
@@ -11,7 +11,7 @@ use super::dynamics::Dynamics;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Quantity, Term};
 use super::formula::Formula;
-use super::lower;
+use super::lower::{self, Lower};
 use super::polynomial::Polynomial;
 
 /// (76): ż.
@@ -38,6 +38,77 @@ pub(super) fn reduced(upper: &Upper) -> Form {
     })
 }
 
+/// z of the law with a measured velocity of the tip: a function, in which z_r stands for Ĵ⁻¹(ẋ_d − αΔx).
+pub(super) fn function() -> Dynamics {
+    let own = Combination::of(nonlinear(Term::JointReference), Polynomial::one());
+    Dynamics { order: 0, plant: 2, right: Form::own(own) }
+}
+
+/// ż of it.
+pub(super) fn rate() -> Form {
+    Form::own(Combination::of(nonlinear(Term::JointReference), Polynomial::power(1)))
+}
+
+/// What controls the joints, and (73).
+fn controller(case: &Case<'_>, lower: &Lower) -> Section {
+    let notation = case.notation();
+    let input = Quantity::own(Letter::Term(lower.input));
+    let section = Section::new(Subject::Controller)
+        .formula(lower.motion(&notation), "(73)")
+        .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(80)");
+    let adapted = adaptation::of(case, &notation).into_iter();
+    adapted.fold(section, |section, (formula, place)| section.formula(formula, place))
+}
+
+/// The explanation of the law with a measured velocity of the tip.
+pub(super) fn by_velocity(case: &Case<'_>, kappa: &BigRational, alpha: &BigRational) -> Explained {
+    let notation = case.notation();
+    let dynamics = function();
+    let upper = dynamics.upper();
+    let lower = lower::robot(case.outside(), false, Some(kappa));
+    let [q, z] = [Letter::Position, Letter::Reference].map(Quantity::own);
+    let degree = upper.degree(lower.order);
+    let sections = vec![
+        Section::new(Subject::VirtualControl)
+            .words(
+                "Not from the paper, but in the manner of the literature with which Remark 9 compares Theorem 6: the velocity of the \
+                 end-effector is measured. z is what the velocity of the joints should be.",
+            )
+            .formula(
+                Formula::equal(notation.quantity(Quantity::own(Letter::Error), 0), notation.form(&dynamics.definition_of_error())),
+                "(79)",
+            ),
+        Section::new(Subject::ReferenceDynamics)
+            .words(format!(
+                "z is no state but a function: z_r stands for Ĵ⁻¹(dx_d − αΔx) with α = {alpha}, (77) for a path that leads back to the target."
+            ))
+            .formula(notation.equation(z, 0, &dynamics.right), "")
+            .words(
+                "Its derivative Ĵ⁻¹(ddx_d − αΔdx − (dĴ/dt)z) takes the measured dx in Δdx = dx − dx_d, where Theorem 6 integrates: what is wrong \
+                 with that measurement is in the torque at once.",
+            )
+            .formula(notation.equation(z, 1, &rate()), ""),
+        controller(case, &lower),
+        Section::new(Subject::Cascade)
+            .system(
+                vec![
+                    notation.equation(q, 1, &dynamics.loop_with_reference()),
+                    Formula::equal(notation.form(&lower.left), notation.form(&lower.right)),
+                ],
+                "",
+            )
+            .words(format!(
+                "Times Ĵ the upper subsystem is dΔx/dt = −αΔx + Ĵs − ZΔθ. It holds s without a derivative: the cascade is of degree {degree}, and \
+                 there is nothing to reduce."
+            )),
+        Section::new(Subject::Convergence).words(
+            "V = ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ + (κ/2)[ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] has V̇ = −sᵀK s − κ α ΔxᵀK*Δx, for as long as Ĵ stays away from singularity. \
+             So s and Δx are bounded and square-integrable; z is bounded, then dx and the derivative of s are, and both vanish.",
+        ),
+    ];
+    Explained { agents: case.agents.clone(), order: Some(1), degrees: Some([degree; 2]), sections }
+}
+
 /// The explanation.
 pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> Explained {
     let notation = case.notation();
@@ -45,13 +116,6 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
     let upper = dynamics.upper();
     let lower = lower::robot(case.outside(), false, Some(kappa));
     let q = Quantity::own(Letter::Position);
-    let input = Quantity::own(Letter::Term(lower.input));
-    let mut controller = Section::new(Subject::Controller)
-        .formula(lower.motion(&notation), "(73)")
-        .formula(Formula::equal(notation.quantity(input, 0), notation.form(&lower.law)), "(80)");
-    for (formula, place) in adaptation::of(case, &notation) {
-        controller = controller.formula(formula, place);
-    }
     let v = Combination::of(q, Polynomial::power(1))
         .plus(nonlinear(Term::JointReference), &-&Polynomial::one())
         .plus(Quantity::own(Letter::Error), &-&Polynomial::one());
@@ -68,7 +132,7 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
             ),
         Section::new(Subject::ReferenceDynamics)
             .formula(notation.equation(Quantity::own(Letter::Reference), 1, &dynamics.right), "(76)"),
-        controller,
+        controller(case, &lower),
         Section::new(Subject::Cascade)
             .system(
                 vec![

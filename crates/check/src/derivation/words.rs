@@ -78,7 +78,7 @@ pub(super) fn links(setup: &Setup, heard: At) -> String {
 pub(super) fn of_s(case: &Case<'_>) -> String {
     match &case.step {
         Step::Robot { known } => return robot(case, *known),
-        Step::TaskSpace(_) => return robot(case, false),
+        Step::TaskSpace(_) | Step::TipVelocity(_) => return robot(case, false),
         Step::PositionOnly(_) if case.is_bounded() => return clamped("V = ½ m sᵀs + (k/2λ_f) yᵀy", "V̇ ≤ −k yᵀy", "So s and y are bounded, and y is square-integrable."),
         Step::PositionOnly(_) => {
             "V = ½ m sᵀs + (k/2λ_f) yᵀy + Δm²/(2γ*) has V̇ = −k yᵀy whatever z does. So s, y and m̂ are bounded, and y is \
@@ -212,7 +212,12 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         }
         Step::Thrust(..) => "So the variables of the upper subsystem are bounded, and ṡ* vanishes",
         Step::PositionOnly(_) => "So the variables of the upper subsystem are bounded, and y and s vanish",
-        Step::Attitude(_) | Step::PassivityFilter(_) | Step::TaskSpace(_) | Step::Chain(..) | Step::Outside(_) => {
+        Step::Attitude(_)
+        | Step::PassivityFilter(_)
+        | Step::TaskSpace(_)
+        | Step::TipVelocity(_)
+        | Step::Chain(..)
+        | Step::Outside(_) => {
             "So the variables of the upper subsystem are bounded, and s vanishes"
         }
     };

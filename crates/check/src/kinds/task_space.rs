@@ -1,4 +1,4 @@
-//! Theorem 6: robots whose tip follows a target by uncertain lengths, without its velocity.
+//! Theorem 6: robots whose tip follows a target by uncertain lengths, without its velocity; and the same by a measured velocity.
 
 use std::sync::Arc;
 
@@ -34,7 +34,12 @@ impl KindCheck for TaskSpaceRobot {
     fn claim(&self, setup: &Setup) -> Option<Claim> {
         let laws = || setup.agents.iter().filter_map(|agent| agent.law.downcast::<TaskSpaceLaw>());
         let some = |follows| laws().any(|law| law.tip.follows() == follows);
-        let (theorem, promises) = if some(Follows::RedundantPosition) {
+        let (theorem, promises) = if laws().any(|law| law.by_velocity) {
+            let beside =
+                if laws().all(|law| law.by_velocity) { "" } else { "; of the others without it, as of Theorem 6" };
+            let promises = "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, by a measured dx";
+            (Theorem::TipVelocity, format!("{promises}{beside}"))
+        } else if some(Follows::RedundantPosition) {
             let more = if some(Follows::Pose) { "; of poses Δp → 0 and Δq_v → 0" } else { "" };
             (
                 Theorem::Theorem6Redundant,

@@ -117,6 +117,7 @@ pub fn planar_tip() -> AgentSetup {
 fn task_space(tip: TipSetup, kinematic_start: &[f64], parameters: usize) -> Arc<dyn Law> {
     Arc::new(TaskSpaceLaw {
         tip,
+        by_velocity: false,
         damping: Gain::Number(20.0),
         adaptation: Gain::Number(30.0),
         estimate_start: vec![0.0; parameters],

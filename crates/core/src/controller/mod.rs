@@ -16,7 +16,7 @@
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
 //! - `stepped`: any controller, sampled.
-//! - `task_space`: (76)–(82), the tip of a robot with uncertain lengths, without its velocity.
+//! - `task_space`: (76)–(82), the tip of a robot with uncertain lengths, without its velocity; and beside it, with a measured one.
 
 mod adaptive_backstepping;
 mod attitude;
@@ -51,7 +51,7 @@ pub use passivity_filter::PassivityFilter;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
-pub use task_space::{NullSpace, TaskMeasured, TaskSpace};
+pub use task_space::{NullSpace, TaskMeasured, TaskMotionMeasured, TaskSpace, TaskSpaceByVelocity};
 pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
 pub use vector_linearising::{VectorLinearising, VectorLinearisingWork};
 

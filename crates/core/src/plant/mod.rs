@@ -20,7 +20,7 @@ pub use chain::{Chain, ChainWork, Closures, Formulas, FormulasWork, Terms};
 pub use mechanical::Mechanical;
 pub use rotorcraft::{Rotorcraft, Rotors};
 pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
-pub use task_arm::TaskArm;
+pub use task_arm::{TaskArm, WatchedTaskArm, WatchedTaskWork};
 pub use vector_chain::{VectorChain, VectorFormulas, VectorFormulasWork};
 pub use vector_field::VectorField;
 pub use vehicle::{Vehicle, VehicleState};

@@ -91,6 +91,24 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
     }
 }
 
+/// z and ż as functions, the law and the adaptation, by an evaluation of their own; a planar arm and one from a URDF.
+#[test]
+fn own_equations_of_a_tip_by_its_velocity_hold_along_its_run() {
+    for name in ["theorem-6", "task-space-ur5e"] {
+        let text = forwardstep::io::scenario::shipped_scenario(name).unwrap().text;
+        let text = text.replace("[law.task_space]\n", "[law.task_space]\ntip_velocity = \"measured\"\n");
+        let folder = with(&text);
+        let words = stdout(&forwardstep(&folder, &["explain", "two.toml"]).success());
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("cascade is of degree 0") && words.contains("Not from the paper"), "{words}");
+        let found = stdout(&forwardstep(&folder, &["explain", "two.toml", "--along"]).success());
+        assert!(!found.contains("NO ROUNDING"), "{found}");
+        for equation in ["z = z_r", "ż = ż_r", "(80)", "(81)", "(82)"] {
+            assert!(found.contains(equation), "{equation}: {found}");
+        }
+    }
+}
+
 #[test]
 fn eq_33_and_eq_43_hold_along_a_run_that_is_disturbed_and_where_s_is_zero() {
     // It starts with s = 0 and is disturbed in the middle; both axes of the second pull at each other.

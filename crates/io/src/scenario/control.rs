@@ -25,6 +25,7 @@ pub(super) fn control(file: &ControlFile, axes: usize) -> Result<Control, Fault>
             },
             position_noise: or_zero(noise.and_then(|noise| noise.position.as_ref())),
             velocity_noise: or_zero(noise.and_then(|noise| noise.velocity.as_ref())),
+            tip_velocity_noise: or_zero(noise.and_then(|noise| noise.tip_velocity.as_ref())),
             seed: noise.map_or(Ok(0), |noise| seed(&noise.seed))?,
             position_quantum: or_zero(steps.and_then(|steps| steps.position.as_ref())),
             velocity_quantum: or_zero(steps.and_then(|steps| steps.velocity.as_ref())),

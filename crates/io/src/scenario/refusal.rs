@@ -68,6 +68,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
             1 => "leave `derivatives` out: z is all that this law integrates".to_owned(),
             need => format!("give `z` and at most {} of its derivatives", need - 1),
         },
+        SetupError::TipVelocity { .. } => "leave `tip_velocity` out: Theorem 6 needs none".to_owned(),
         SetupError::UnusedEdges { .. } => "leave `network` out, or write `reference.consensus`".to_owned(),
         SetupError::VelocityUnused { filtered: true, .. } => {
             "delete it, or let `velocity` be \"measured\"; noise and steps of positions count".to_owned()

@@ -116,6 +116,7 @@ fn control_is_read_as_it_is_written() {
             velocity: VelocitySensor::Filtered { cut_off_hz: 40.0 },
             position_noise: 1e-4,
             velocity_noise: 0.0,
+            tip_velocity_noise: 0.0,
             seed: 9,
             position_quantum: 1e-5,
             velocity_quantum: 0.0,

@@ -88,6 +88,8 @@ fn rest() -> Vec<String> {
         (TIP, "adaptation_gain.bandwidth_per_s = 10", &format!("adaptation_gain = [{}]", ["1"; 30].join(", "))),
         (TIP, "task_gain = 200", "task_gain = [200, 200, 100]"),
     ];
+    let watched = "tip_velocity = \"measured\"\ntask_gain = 200";
+    let noisy = "[control]\nsample_hz = 500\nnoise = { seed = 1, tip_velocity = 0.05 }\n\n[goal]";
     let mut all: Vec<String> = two.iter().map(|(text, from, to)| text.replace(from, to)).collect();
     all.push(arms.iter().fold(ARMS.to_owned(), |text, (from, to)| text.replace(from, to)));
     all.push(of_order_three("immersion]\nadaptation_gain = 2\nantiderivatives = [\"d2x*sin(x)\", \"d2x*dx\"]"));
@@ -95,6 +97,7 @@ fn rest() -> Vec<String> {
     all.push(of_order_three("linearising]\nfloor = 1e-2"));
     let stated = [("\"continuous\"", "\"differentiable\""), ("roots_per_s = [1.5]", "alpha = 2\nbeta = 3")];
     all.push(stated.iter().fold(FOLLOWERS.to_owned(), |text, (from, to)| text.replace(from, to)));
+    all.push(TIP.replace("task_gain = 200", watched).replace("[goal]", noisy));
     all.extend([ARMS, FOLLOWERS].map(str::to_owned));
     all
 }

@@ -1,10 +1,10 @@
-//! The end-effector of a robot with uncertain lengths, without its velocity: (76)–(82), Theorem 6.
+//! The end-effector of a robot with uncertain lengths, without its velocity: (76)–(82), Theorem 6; or with a measured one.
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::{NullSpace, TaskSpace};
+use forwardstep_core::controller::{NullSpace, TaskSpace, TaskSpaceByVelocity};
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_core::plant::{Mechanical, TaskArm};
+use forwardstep_core::plant::{Mechanical, TaskArm, WatchedTaskArm};
 use forwardstep_core::robot::tree::{Follows, LinkPoint, TipError, Tree, TreeTip, Uncertain};
 use forwardstep_core::robot::{Driven, Lagrangian, PlanarArm, PlanarTip, TipKinematics};
 use forwardstep_core::{Gain, ResolvedGain};
@@ -26,6 +26,8 @@ const OF_ATTITUDE: [&str; 4] = ["q_x", "q_y", "q_z", "q_o"];
 pub struct TaskSpaceLaw {
     /// What is to follow the target, with its true lengths.
     pub tip: TipSetup,
+    /// Whether the velocity of the tip is measured, and z a function of it; see [`TaskSpaceByVelocity`].
+    pub by_velocity: bool,
     /// K; a [`Gain::Bandwidth`] as in [`crate::Adaptive`].
     pub damping: Gain,
     /// Γ; a [`Gain::Bandwidth`] as in [`crate::Adaptive`].
@@ -104,7 +106,8 @@ impl TipSetup {
 
 impl Law for TaskSpaceLaw {
     fn words(&self) -> LawWords {
-        LawWords { name: "the law for a tip", made_for: "planar arms, and for robots from a URDF with a tip" }
+        let name = if self.by_velocity { "the law for a tip with a measured velocity" } else { "the law for a tip" };
+        LawWords { name, made_for: "planar arms, and for robots from a URDF with a tip" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {
@@ -114,13 +117,18 @@ impl Law for TaskSpaceLaw {
         };
         let truth = self.tip.parameters(&*robot.kind).unwrap_or_default();
         let line = |(entry, truth)| Line { signal: Signal::KinematicEstimate, entry, value: LineValue::Truth(truth) };
+        let controller = if self.by_velocity {
+            Interface::of::<TaskSpaceByVelocity<PlanarArm, PlanarTip>>()
+        } else {
+            Interface::of::<TaskSpace<PlanarArm, PlanarTip>>()
+        };
         suits.then(|| Interface {
             measures_velocity: true,
             pushed: true,
             estimates: true,
             coordinates: Some(self.coordinates()),
             lines: truth.into_iter().enumerate().map(line).collect(),
-            ..Interface::of::<TaskSpace<PlanarArm, PlanarTip>>()
+            ..controller
         })
     }
 
@@ -189,6 +197,9 @@ impl TaskSpaceLaw {
         assembly.length(law.clone(), "the names of the kinematic parameters", p, self.kinematic_names.len())?;
         assembly.estimate("estimate_start.given", &self.estimate_start, robot.parameter_count())?;
         assembly.estimate("kinematic_start.given", &self.kinematic_start, p)?;
+        if self.by_velocity && self.tip.follows() != Follows::Position {
+            return Err(SetupError::TipVelocity { agent: own.name.clone() });
+        }
         if tip.turns() {
             positive(law.clone(), "attitude_gain", self.attitude_gain)?;
         }
@@ -244,6 +255,9 @@ impl TaskSpaceLaw {
             tip: tip.clone(),
         };
         let plant = TaskArm { arm: Mechanical { robot, theta: own.robot.theta.clone() }, tip, tip_theta };
+        if self.by_velocity {
+            return assembly.solo(WatchedTaskArm(plant), TaskSpaceByVelocity(controller));
+        }
         assembly.solo(plant, controller)
     }
 }

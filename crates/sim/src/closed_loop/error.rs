@@ -387,6 +387,14 @@ pub enum SetupError {
         /// There is such a term.
         has: bool,
     },
+    /// The law with a measured velocity of the tip, for a pose or for joints to spare.
+    #[error(
+        "agent `{agent}`: with a measured velocity of the tip the law is derived for positions of as many coordinates as there are joints"
+    )]
+    TipVelocity {
+        /// The agent.
+        agent: String,
+    },
     /// Bounds of parameters that are not adapted.
     #[error("agent `{agent}`: bounds of estimates have no effect where these are not adapted: leave them out")]
     BoundsOfKnown {
@@ -404,7 +412,11 @@ pub enum SetupError {
     /// What a sensor of velocities would do, where it has no part in anything.
     #[error(
         "{} is {value}, but {}", .quantity.words(),
-        if *.filtered { "velocities come from filtered differences of positions" } else { "no law measures velocities" }
+        match (*.filtered, *.quantity) {
+            (true, _) => "velocities come from filtered differences of positions",
+            (false, VelocityQuantity::TipNoise) => "no law measures the velocity of a tip",
+            (false, _) => "no law measures velocities",
+        }
     )]
     VelocityUnused {
         /// What it is.
@@ -469,6 +481,8 @@ impl From<NetworkError> for SetupError {
 pub enum VelocityQuantity {
     /// [`crate::Sensors::velocity_noise`].
     Noise,
+    /// [`crate::Sensors::tip_velocity_noise`].
+    TipNoise,
     /// [`crate::Sensors::velocity_quantum`].
     Step,
     /// [`crate::VelocitySensor::Filtered`].
@@ -479,6 +493,7 @@ impl VelocityQuantity {
     pub(super) fn key(self) -> &'static str {
         match self {
             VelocityQuantity::Noise => "noise.velocity",
+            VelocityQuantity::TipNoise => "noise.tip_velocity",
             VelocityQuantity::Step => "quantisation.velocity",
             VelocityQuantity::CutOff => "velocity",
         }
@@ -488,6 +503,7 @@ impl VelocityQuantity {
     pub fn words(self) -> &'static str {
         match self {
             VelocityQuantity::Noise => "the noise of velocities",
+            VelocityQuantity::TipNoise => "the noise of the velocities of tips",
             VelocityQuantity::Step => "the step of velocities",
             VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
         }

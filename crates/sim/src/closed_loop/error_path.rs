@@ -73,6 +73,7 @@ impl SetupError {
             | SetupError::ProjectionOfMatrix { agent }
             | SetupError::BoundsOfKnown { agent }
             | SetupError::NullSpace { agent, .. }
+            | SetupError::TipVelocity { agent }
             | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
             SetupError::Push { agent, .. } => of(agent),
             SetupError::Limiter { .. } | SetupError::TorqueLimitCount { of_rates: false, .. } => {

@@ -23,6 +23,8 @@ pub(crate) struct Digital {
     torque_quantum: f64,
     /// Numbers of a position, and of the velocity that follows.
     axes: [usize; 2],
+    /// Where the measured velocity of a tip stands in the output.
+    tip_velocity: Range<usize>,
     /// Which part of the plant's output the controller takes: first entries there and here, and how many.
     parts: Vec<[usize; 3]>,
     /// The plant's output as the sensors see it.
@@ -49,7 +51,11 @@ impl Digital {
         let count = |at: usize, wanted| outputs.get(at).filter(|(signal, _)| *signal == wanted).map_or(0, |(_, n)| *n);
         let (mut parts, mut first) = (Vec::new(), 0);
         let measured = controller.measures();
+        let mut tip_velocity = 0..0;
         for &(signal, n) in outputs {
+            if signal == Signal::TaskVelocity {
+                tip_velocity = first..first + n;
+            }
             if let Some(at) = measured.iter().position(|(wanted, _)| *wanted == signal) {
                 parts.push([first, total(&measured[..at]), n]);
             }
@@ -67,6 +73,7 @@ impl Digital {
             sensor: Sensor::new(control.sensors, agent),
             torque_quantum: control.actuators.torque_quantum,
             axes: [count(0, Signal::Position), count(1, Signal::Velocity)],
+            tip_velocity,
             parts,
             output: vec![0.0; first],
             measured: vec![0.0; total(measured)],
@@ -124,6 +131,7 @@ impl Digital {
         let [axes, velocities] = self.axes;
         let (q, rest) = self.output.split_at_mut(axes);
         self.sensor.measure(q, &mut rest[..velocities]);
+        self.sensor.watch(&mut self.output[self.tip_velocity.clone()]);
         for &[first, from, n] in &self.parts {
             self.measured[from..from + n].copy_from_slice(&self.output[first..first + n]);
         }
@@ -211,6 +219,15 @@ impl Sensor {
         }
         q.iter_mut().for_each(|q| *q = quantise(*q, kind.position_quantum));
         dq.iter_mut().for_each(|dq| *dq = quantise(*dq, kind.velocity_quantum));
+    }
+}
+
+impl Sensor {
+    /// Adds the noise of the velocity of a tip, of which nothing is drawn where there is none.
+    fn watch(&mut self, dx: &mut [f64]) {
+        if self.kind.tip_velocity_noise > 0.0 {
+            dx.iter_mut().for_each(|dx| *dx += self.kind.tip_velocity_noise * normal(&mut self.draw)[0]);
+        }
     }
 }
 

@@ -26,6 +26,13 @@ pub(super) fn of_setup(setup: &Setup) -> Result<(), SetupError> {
 /// Noise and steps of velocities where none are measured.
 fn of_sensors(control: &Control, agents: &[AgentSetup]) -> Result<(), SetupError> {
     let sensors = &control.sensors;
+    let watches = |agent: &AgentSetup| {
+        agent.interface().is_none_or(|interface| interface.measures.contains(&"task-space velocity"))
+    };
+    if sensors.tip_velocity_noise != 0.0 && !agents.iter().any(watches) {
+        let (quantity, value) = (VelocityQuantity::TipNoise, sensors.tip_velocity_noise);
+        return Err(SetupError::VelocityUnused { quantity, value, filtered: false });
+    }
     // A law beside a robot that it is not made for is refused for that.
     let measured = agents.iter().any(|agent| agent.interface().is_none_or(|interface| interface.measures_velocity));
     let (filtered, cut_off_hz) = match sensors.velocity {

@@ -44,6 +44,7 @@ pub fn planar(bounds: Option<ParameterBounds>, kinematic_gain: f64) -> Setup {
     };
     let law = TaskSpaceLaw {
         tip: TipSetup::Planar(PlanarTip { length_m: links.length_m }),
+        by_velocity: false,
         damping: Gain::Number(20.0),
         adaptation: Gain::Number(30.0),
         estimate_start: vec![0.0; 5],
@@ -89,6 +90,7 @@ pub fn anthropomorphic(uncertain: Uncertain) -> Setup {
     };
     let law = TaskSpaceLaw {
         tip: TipSetup::Point { point, coordinates: vec![0, 1, 2], follows: Follows::Position, uncertain },
+        by_velocity: false,
         damping: Gain::Bandwidth(20.0),
         adaptation: Gain::Bandwidth(3.0),
         estimate_start: vec![0.0; assembled.theta.len()],

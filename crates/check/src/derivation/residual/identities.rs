@@ -137,6 +137,17 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             list.adaptation(case);
             in_order(list.found)
         }
+        (_, Step::TipVelocity([kappa, _])) => {
+            let dynamics = task_space::function();
+            let mut list = List::new(notation, Frame::of(&dynamics.upper(), case));
+            let z = Quantity::own(Letter::Reference);
+            list.equation(Subject::ReferenceDynamics, (z, 0), &dynamics.right, "");
+            list.equation(Subject::ReferenceDynamics, (z, 1), &task_space::rate(), "");
+            let lower = super::super::lower::robot(case.outside(), false, Some(kappa));
+            list.lower(case, &lower, ["(73)", "(80)", ""]);
+            list.adaptation(case);
+            in_order(list.found)
+        }
         (_, Step::Outside(_)) | (Led::Outside(_, None) | Led::Refuted(..), _) => Vec::new(),
         (_, Step::Thrust(ThrustStep::Continuous, _)) => {
             case.dynamics().map_or_else(Vec::new, |dynamics| continuous(case, &dynamics, notation))
@@ -224,8 +235,8 @@ impl List {
     fn adaptation(&mut self, case: &Case<'_>) {
         for (formula, place) in adaptation::of(case, &self.notation) {
             let rest = match (&case.step, place) {
-                (Step::Robot { .. } | Step::TaskSpace(_), "(7)" | "(81)") => Rest::Estimate,
-                (Step::TaskSpace(_), "(82)") => Rest::Kinematic,
+                (Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_), "(7)" | "(81)") => Rest::Estimate,
+                (Step::TaskSpace(_) | Step::TipVelocity(_), "(82)") => Rest::Kinematic,
                 (Step::PositionOnly([_, rate]), "after (a9)") if is_rate_of(&formula, "y") => {
                     let y = Quantity::own(Letter::Filter);
                     let number = |number| Polynomial::number(number);

@@ -152,8 +152,8 @@ impl<'c, 'a> At<'c, 'a> {
         let most = if integrated { 1 } else { u8::MAX };
         let found = self.chained((0..most).map(Signal::Reference), k);
         // z that is no state is recorded.
-        match (&self.case.led, k) {
-            (Led::Backstepping, 0 | 1) => {
+        match (&self.case.led, &self.case.step, k) {
+            (Led::Backstepping, _, 0 | 1) | (_, Step::TipVelocity(_), 0 | 1) => {
                 self.recorded(Signal::Reference(k as u8)).map(<[f64]>::to_vec).ok_or(Missing::Derivative)
             }
             _ => found,
@@ -398,9 +398,12 @@ impl<'c, 'a> At<'c, 'a> {
         match self.case.step {
             Step::Attitude(_) | Step::PassivityFilter(_) => Signal::ExternalTorque,
             Step::Chain(..) => Signal::Disturbance,
-            Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::TaskSpace(_) | Step::Outside(_) => {
-                Signal::External
-            }
+            Step::Robot { .. }
+            | Step::PositionOnly(_)
+            | Step::Thrust(..)
+            | Step::TaskSpace(_)
+            | Step::TipVelocity(_)
+            | Step::Outside(_) => Signal::External,
         }
     }
 
@@ -430,6 +433,7 @@ impl<'c, 'a> At<'c, 'a> {
             | Step::Attitude(_)
             | Step::PassivityFilter(_)
             | Step::TaskSpace(_)
+            | Step::TipVelocity(_)
             | Step::Chain(..)
             | Step::Outside(_) => {}
         }

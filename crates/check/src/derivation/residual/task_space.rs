@@ -11,6 +11,7 @@ use forwardstep_core::robot::{Posture, TipKinematics};
 use forwardstep_sim::{AgentSetup, Signal, TaskSpaceLaw, TipSetup};
 use nalgebra::{DMatrix, DVector};
 
+use super::super::case::Step;
 use super::super::form::Term;
 use super::Missing;
 use super::moment::{At, Vector, exact};
@@ -59,7 +60,7 @@ struct Seen {
     error: Vector,
     /// Δq_v of a pose, or nothing.
     turned: Vector,
-    /// ẋ_d and ẍ_d, with ω_d and ω̇_d of a pose.
+    /// ẋ_d and ẍ_d, with ω_d and ω̇_d of a pose; by a measured velocity of the tip less αΔx and αΔẋ.
     target: [Vec<f64>; 2],
 }
 
@@ -175,6 +176,9 @@ impl At<'_, '_> {
         let estimate = |rates| self.state(Signal::KinematicEstimate, rates).ok_or(Missing::Term);
         let mut target = [values(&dx_d), values(&ddx_d)];
         let turned = self.turned_away(error.len(), &mut target)?;
+        if matches!(self.case.step, Step::TipVelocity(_)) {
+            self.led_back(&error, &mut target)?;
+        }
         Ok(Seen {
             q: self.position(0)?,
             dq: self.position(1)?,
@@ -183,6 +187,18 @@ impl At<'_, '_> {
             turned,
             target,
         })
+    }
+
+    /// ẋ_d − αΔx and ẍ_d − αΔẋ with the recorded ẋ in the place of ẋ_d and ẍ_d.
+    fn led_back(&self, error: &Vector, target: &mut [Vec<f64>; 2]) -> Result<(), Missing> {
+        let law = self.case.setup.agents[self.moment.agent].law.downcast::<TaskSpaceLaw>().ok_or(Missing::Term)?;
+        let dx = self.recorded(Signal::TaskVelocity).ok_or(Missing::Term)?;
+        let [velocity, acceleration] = target;
+        for (k, ([error, _], dx)) in error.iter().zip(dx).enumerate() {
+            acceleration[k] -= law.alpha_per_s * (dx - velocity[k]);
+            velocity[k] -= law.alpha_per_s * error;
+        }
+        Ok(())
     }
 
     /// Δq_v of a pose, the quaternion of R R_dᵀ with the sign of the recorded Δq_o; in the place of the rates of the desired

@@ -24,6 +24,8 @@
 //! and gains sᵀτ_ext from what acts from outside
 //! (the second subsystem of the paper's cascade prints Y(q, q̇, z_r, ż_r) in the adaptation; (81) is what V̇ needs).
 //!
+//! **With a measured velocity of the tip** z can be a function of what is measured: `measured.rs`, which the paper names for contrast.
+//!
 //! **Poses** and **redundant joints** are not in the paper; `pose.rs` and `null_space.rs` derive them. Both keep V̇: a pose has another
 //! potential in the place of ½ ΔxᵀK*Δx, whose rate is eᵀ(J q̇ − ẋ_d) with another e in the place of K*Δx, and redundant joints
 //! another z_r with Ĵ z_r = ẋ_d.
@@ -32,6 +34,8 @@
 //! κ Σ (c_k − 1) Δθ_k u_k ≤ 0. (81) is a gradient of the same kind: ϑ̂ is kept within the bounds of [`SlotineLi`], with the term that they
 //! bring there.
 
+mod balance;
+mod measured;
 mod null_space;
 mod pose;
 mod tip;
@@ -39,6 +43,7 @@ mod tip;
 use alloc::vec;
 use alloc::vec::Vec;
 
+pub use measured::{TaskMotionMeasured, TaskSpaceByVelocity};
 pub use null_space::NullSpace;
 use tip::TaskWork;
 
@@ -309,11 +314,7 @@ where
 
     fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
         let l = self.layout();
-        let (start, value) = (*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.joints())?);
-        // A change of sign is below the floor too, and a start at zero is there at once.
-        let floor = self.determinant_floor * start;
-        let vanishes = if start < 0.0 { value >= floor } else { value <= floor };
-        vanishes.then_some(Trouble::Vanishes { signal: self.regularity(), axis: 0, value, floor })
+        self.vanishing(*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.joints())?)
     }
 
     fn settle(&self, _: &mut [f64]) {}
@@ -326,69 +327,16 @@ where
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {
-        let (m, l, plant) = (self.tip.joints(), self.layout(), truth.plant);
+        let (m, l) = (self.tip.joints(), self.layout());
         LengthError::check("state", l.end, state.len())?;
-        LengthError::check("theta", self.robot.parameter_count(), plant.arm.theta.len())?;
-        LengthError::check("kinematic parameters", self.tip.parameter_count(), plant.tip_theta.len())?;
-        LengthError::check("state of the plant", 2 * m, truth.state.len())?;
-        let theta_hat = &state[l.kinematic..l.determinant];
         self.task(work, given.measured, given.target, state)?;
-        let q = &truth.state[..m];
+        let (z, mut strayed) = (&state[..m], 0.0);
         for k in 0..m {
-            work.s[k] = truth.state[m + k] - state[k];
+            let apart = z[k] - work.z_r[k];
+            strayed += apart * apart;
+            work.dz_r[k] -= self.alpha * apart + work.pulled[k];
         }
-
-        // Y(q, 0, 0, ż) ϑ = M ż + g, and beside g stands what damping and friction take.
-        let (inertia, lost) = {
-            let TaskWork { robot, still, s, damped, yt_s, .. } = work;
-            let (arm, theta) = (&plant.arm.robot, &plant.arm.theta);
-            let power = |torque: &[f64], s: &[f64]| -> f64 { s.iter().zip(torque).map(|(s, torque)| s * torque).sum() };
-            arm.regressor_products(robot, TwoVelocity { q, dq: still, z: still, dz: s }, theta, s, damped, yt_s)?;
-            let whole = power(damped, s);
-            arm.regressor_products(robot, TwoVelocity { q, dq: still, z: still, dz: still }, theta, s, damped, yt_s)?;
-            let gravity = power(damped, s);
-            let moving = TwoVelocity { q, dq: &truth.state[m..2 * m], z: &state[..m], dz: still };
-            arm.add_damping(robot, moving, theta, damped)?;
-            (whole - gravity, power(damped, s) - gravity)
-        };
-        self.law.damping.apply(&work.s, &mut work.damped);
-        let mut dissipation = lost;
-        let mut strayed = 0.0;
-        for k in 0..m {
-            dissipation += work.s[k] * work.damped[k];
-            dissipation -= truth.external.get(k).map_or(0.0, |external| work.s[k] * external);
-            strayed += (state[k] - work.z_r[k]) * (state[k] - work.z_r[k]);
-        }
-        let mut value = 0.5 * inertia + 0.5 * self.kappa * (strayed + 2.0 * self.potential(work));
-        dissipation += self.kappa * self.alpha * strayed;
-
-        if let Some(bounds) = &self.law.bounds {
-            let TaskMeasured { q, dq, .. } = given.measured;
-            let TaskWork { robot, dz_r, z_r, pulled, s, damped, yt_s, .. } = &mut *work;
-            let z = &state[..m];
-            for k in 0..m {
-                dz_r[k] -= self.alpha * (z[k] - z_r[k]) + pulled[k];
-            }
-            let (motion, theta_hat) = (TwoVelocity { q, dq, z, dz: dz_r }, &state[l.theta..l.kinematic]);
-            self.robot.regressor_products(robot, motion, theta_hat, s, damped, yt_s)?;
-            dissipation += bounds.gained(theta_hat, &plant.arm.theta, yt_s);
-        }
-        let TaskWork { difference, inverse_gamma, inverse_lambda, push, .. } = work;
-        if let Some(inverse) = inverse_gamma {
-            for (k, hat) in state[l.theta..l.kinematic].iter().enumerate() {
-                difference[k] = hat - plant.arm.theta[k];
-            }
-            value += 0.5 * inverse.of(difference);
-        }
-        if let Some(inverse) = inverse_lambda {
-            for (k, hat) in theta_hat.iter().enumerate() {
-                difference[k] = hat - plant.tip_theta[k];
-                if let Some(bounds) = self.enforced_bounds() {
-                    dissipation += self.kappa * difference[k] * (push[k] - bounds.slowed(k, *hat, push[k]));
-                }
-            }
-            value += 0.5 * self.kappa * inverse.of(difference);
-        }
-        Ok(Balance { value, dissipation })
+        let estimates = [&state[l.theta..l.kinematic], &state[l.kinematic..l.determinant]];
+        self.balanced(work, [truth.state, truth.external], truth.plant, (z, estimates), [strayed; 2])
     }
 }

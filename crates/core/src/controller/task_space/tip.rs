@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::null_space::Free;
 use super::{TaskMeasured, TaskSpace};
 use crate::attitude::{IDENTITY, Quaternion};
-use crate::controller::Jets;
+use crate::controller::{Jets, Trouble};
 use crate::law::ParameterBounds;
 use crate::linear::{invert, singular_values};
 use crate::robot::{Lagrangian, Posture, TipKinematics};
@@ -79,6 +79,14 @@ where
         if self.tip.turns() || self.is_redundant() { Signal::SingularValue } else { Signal::Determinant }
     }
 
+    /// What is wrong where Ĵ comes too close to singular, by what says so at the start and now.
+    pub(super) fn vanishing(&self, start: f64, value: f64) -> Option<Trouble> {
+        // A change of sign is below the floor too, and a start at zero is there at once.
+        let floor = self.determinant_floor * start;
+        let vanishes = if start < 0.0 { value >= floor } else { value <= floor };
+        vanishes.then_some(Trouble::Vanishes { signal: self.regularity(), axis: 0, value, floor })
+    }
+
     pub(super) fn is_redundant(&self) -> bool {
         self.tip.joints() > self.tip.rows()
     }
@@ -125,13 +133,23 @@ where
         target: Jets<'_>,
         state: &[f64],
     ) -> Result<f64, LengthError> {
-        let (n, m, l) = (self.tip.joints(), self.tip.rows(), self.layout());
-        let TaskMeasured { q, dq, x } = measured;
-        self.check()?;
-        LengthError::check("x", self.tip.axes(), x.len())?;
+        let l = self.layout();
         LengthError::check("state", l.end, state.len())?;
-        let theta_hat = &state[l.kinematic..l.determinant];
+        self.check()?;
+        LengthError::check("x", self.tip.axes(), measured.x.len())?;
         self.errors(work, measured, target, state.get(l.sign).copied())?;
+        self.led(work, measured, &state[l.kinematic..l.determinant])
+    }
+
+    /// The same behind the errors and the two rates of what leads the tip.
+    pub(super) fn led(
+        &self,
+        work: &mut TaskWork<R::Scratch>,
+        measured: TaskMeasured<'_>,
+        theta_hat: &[f64],
+    ) -> Result<f64, LengthError> {
+        let (n, m) = (self.tip.joints(), self.tip.rows());
+        let TaskMeasured { q, dq, .. } = measured;
         self.tip.regressor_transposed(q, dq, &work.weighted, &mut work.push)?;
         work.d_theta_hat.fill(0.0);
         if let Some(lambda) = &self.kinematic_adaptation {

@@ -1,4 +1,4 @@
-//! `law.task_space`: the end-effector of a robot follows a target with uncertain lengths, Theorem 6.
+//! `law.task_space`: the end-effector of a robot follows a target with uncertain lengths, Theorem 6 or with a measured velocity.
 
 use std::sync::Arc;
 
@@ -66,6 +66,11 @@ enum TipProblem {
         "a planar arm has as many joints as its tip has coordinates; `null_space` is for redundant robots from a URDF"
     )]
     PlanarNullSpace,
+    /// A measured velocity of a pose, or of redundant joints.
+    #[error(
+        "with a measured velocity of the tip the law is derived for positions of as many coordinates as there are joints"
+    )]
+    MeasuredVelocity,
     /// Bounds beside a full matrix.
     #[error("`bounds` need `kinematic_gain` to be a number or a diagonal, not a matrix")]
     BoundsOfMatrix,
@@ -89,6 +94,7 @@ impl Mistake for TipProblem {
                 "leave `null_space` out".into()
             }
             TipProblem::NoPose => "leave it out, or let `follows` of the end-effector be \"pose\"".into(),
+            TipProblem::MeasuredVelocity => "leave `tip_velocity` out: Theorem 6 needs none".into(),
             TipProblem::Missing => "add end_effector = { link = \"…\" } with a link of the URDF".into(),
             TipProblem::Unsound(_) | TipProblem::BoundsOfMatrix => return None,
         })
@@ -101,6 +107,8 @@ impl Mistake for TipProblem {
 pub struct TaskSpaceFile {
     /// The end-effector of a robot from a URDF. A planar arm has one of its own.
     pub end_effector: Option<At<TipFile>>,
+    /// Where the velocity of the tip comes from. Default: there is none, and z is integrated as in Theorem 6.
+    pub tip_velocity: Option<At<TipVelocityFile>>,
     /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 20 otherwise.
     pub damping: Option<DampingFile>,
     /// The gain Γ. Default: a bandwidth of 5 1/s for a URDF, 30 otherwise.
@@ -120,7 +128,8 @@ pub struct TaskSpaceFile {
     /// The gain κ with which that error enters the torque. Default: 5.
     #[schemars(with = "Option<Positive>")]
     pub torque_share: Option<At<f64>>,
-    /// The rate α at which the reference velocity forgets, in 1/s. Default: 3.
+    /// The rate α at which the reference velocity forgets, in 1/s; with a measured velocity of the tip, the rate at which its error
+    /// vanishes. Default: 3.
     #[schemars(with = "Option<Positive>")]
     pub reference_gain_per_s: Option<At<f64>>,
     /// The gain Λ of the lengths: a number, a diagonal or a matrix. Large ones can drive the estimated Jacobian through a
@@ -162,6 +171,14 @@ pub enum FollowsFile {
     /// Its position and its orientation, by exactly six joints: not from the paper. The target has a quaternion after the
     /// position, of the link in the base.
     Pose,
+}
+
+/// Where the velocity of a tip comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TipVelocityFile {
+    /// It is measured, and z is a function of it: not from the paper, whose Remark 9 names such laws for contrast.
+    Measured,
 }
 
 /// The posture that redundant joints keep to where the tip leaves them free.
@@ -249,9 +266,14 @@ impl LawKind for TaskSpaceFile {
         if let (Some(place), false) = (&self.attitude_gain, tip.follows() == Follows::Pose) {
             return Err(fault(place, TipProblem::NoPose));
         }
+        let by_velocity = self.tip_velocity.is_some();
+        if let (Some(place), false) = (&self.tip_velocity, tip.follows() == Follows::Position) {
+            return Err(fault(place, TipProblem::MeasuredVelocity));
+        }
         let null_space = self.null_space.as_ref().map(|place| null_space(&place.value, agent, robot)).transpose()?;
         Ok(Arc::new(TaskSpaceLaw {
             tip,
+            by_velocity,
             kinematic_names,
             damping,
             adaptation,
