@@ -217,9 +217,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         | Step::TaskSpace(_)
         | Step::TipVelocity(_)
         | Step::Chain(..)
-        | Step::Outside(_) => {
-            "So the variables of the upper subsystem are bounded, and s vanishes"
-        }
+        | Step::Outside(_) => "So the variables of the upper subsystem are bounded, and s vanishes",
     };
     let bounded = match case.outside().rubbing {
         Some(Rubbing::Dry) => return format!("{enters} {}", with_dry_friction(case)),
