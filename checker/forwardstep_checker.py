@@ -580,7 +580,7 @@ GAINS = {
     "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
     "adaptive_backstepping": ("gains_per_s", "adaptation_gain")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
-                  "bounds determinant_floor antiderivatives null_space")
+                  "bounds determinant_floor antiderivatives null_space tip_velocity")
 REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
 DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlinear stable_because input_to_state_stable_because"
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
@@ -942,11 +942,11 @@ def theorem(scenario):
         return dict(zip(DESIGNS, ("theorem-8" + scenario.over(), *LED))).get(scenario.body.get("design"), "no design")
     kinds = {treated(agent) for agent in agents}
     if len(kinds) > 1: return "targets" if tracking else "mixture"
+    tip = "tip-velocity" if any("tip_velocity" in agent.gains for agent in agents) else "theorem-6" + max(map(extension, agents))
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
-             "task space": "theorem-6" + max(map(extension, agents)), "attitude": "theorem-7",
-             "chain": f"chains-{'track' if tracking else 'agree'}", "position only": "position-only-tracks" if tracking else "remark-7"}
-    kind = kinds.pop()
-    if kind in named or tracking: return named.get(kind, "robots-track")
+             "task space": tip, "attitude": "theorem-7", "chain": f"chains-{'track' if tracking else 'agree'}",
+             "position only": "position-only-tracks" if tracking else "remark-7"}
+    if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
     if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
     if scenario.reference != "consensus":
@@ -1006,7 +1006,7 @@ def rooted(scenario):
 # Whether measurements have noise, steps, or come from a filter.
 def inexact(control):
     velocity = choice(control.get("velocity", "measured"), "velocity")[0]
-    parts = [(table(control.get(key, {}), key), entry) for key in ("noise", "quantisation") for entry in ("position", "velocity")]
+    parts = [(table(control.get(k, {}), k), entry) for k in ("noise", "quantisation") for entry in ("position", "velocity", "tip_velocity")]
     return velocity != "measured" or any(exact(part.get(entry, 0), entry) > 0 for part, entry in parts)
 
 # What may be spoken about robot by robot.

@@ -68,6 +68,7 @@ fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<(), 
 
 /// What was waived, and what it all comes to.
 fn conclude(report: &Report, accepted: &[Id], console: &mut Console) {
+    let mut waived = Vec::new();
     for id in accepted {
         let said = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == *id).map(|h| h.answer()).max();
         let name = id.name();
@@ -76,7 +77,10 @@ fn conclude(report: &Report, accepted: &[Id], console: &mut Console) {
             Some(answer) if answer.is_fine() => {
                 format!("{FAIR}accepted{FAIR:#}: {name}, without need: {}", answer.words())
             }
-            Some(answer) => format!("{FAIR}accepted{FAIR:#}: {name}, although {}", answer.words()),
+            Some(answer) => {
+                waived.push(name);
+                format!("{FAIR}accepted{FAIR:#}: {name}, although {}", answer.words())
+            }
         });
     }
     let outcome = report.worst_without(accepted);
@@ -85,9 +89,9 @@ fn conclude(report: &Report, accepted: &[Id], console: &mut Console) {
         .filter(|hypothesis| hypothesis.answer() == outcome && !accepted.contains(&hypothesis.id))
         .map(|hypothesis| hypothesis.id.name())
         .collect();
-    if outcome.is_fine() || reasons.is_empty() {
-        console.line(format_args!("{BOLD}all in all{BOLD:#}: {style}{words}{style:#}"));
-    } else {
-        console.line(format_args!("{BOLD}all in all{BOLD:#}: {style}{words}{style:#} ({})", reasons.join(", ")));
-    }
+    let because =
+        if outcome.is_fine() || reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join(", ")) };
+    let but =
+        if waived.is_empty() { String::new() } else { format!(", but for what was accepted: {}", waived.join(", ")) };
+    console.line(format_args!("{BOLD}all in all{BOLD:#}: {style}{words}{style:#}{because}{but}"));
 }
