@@ -367,12 +367,10 @@ def shaped(node, names, depth):
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
         return inner(node.operand) if isinstance(node.op, ast.UAdd) else ("f", "neg", inner(node.operand))
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow): return "^", inner(node.left), constant(inner(node.right))
-    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-        return OPERATORS[type(node.op)], inner(node.left), inner(node.right)
+    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS: return OPERATORS[type(node.op)], inner(node.left), inner(node.right)
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         name = node.func.id
-        if name == "_" and len(node.args) == 1 and isinstance(node.args[0], ast.Constant):
-            return "number", decimal(str(node.args[0].value))
+        if name == "_" and len(node.args) == 1 and isinstance(node.args[0], ast.Constant): return "number", decimal(str(node.args[0].value))
         arguments = [inner(argument) for argument in node.args]
         if name in FUNCTIONS and len(arguments) == 1: return "f", name, arguments[0]
         if name in ("min", "max") and len(arguments) > 1: return functools.reduce(lambda a, b: (name, a, b), arguments)
@@ -564,7 +562,7 @@ MADE_FOR = {
     "adaptive": LAGRANGIAN, "known": LAGRANGIAN, "position_only": ("point_mass",), "thrust": ("vehicle", "rotorcraft"),
     "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",),
     "linear_adaptive": ("chain", "vector_chain"), "linearising": ("chain", "vector_chain"), "immersion": ("chain",),
-    "adaptive_backstepping": ("strict_feedback", "pure_feedback")}
+    "adaptive_backstepping": ("strict_feedback", "pure_feedback"), "passivity_filter": ("spacecraft",)}
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
@@ -578,7 +576,7 @@ GAINS = {
     "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
     "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"), "linearising": ("gain_per_s",),
     "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
-    "adaptive_backstepping": ("gains_per_s", "adaptation_gain")}
+    "adaptive_backstepping": ("gains_per_s", "adaptation_gain"), "passivity_filter": ("error_gain_n_m", "filter_gain_per_s", "damping")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
                   "bounds determinant_floor antiderivatives null_space tip_velocity")
 REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
@@ -927,7 +925,7 @@ def read(path):
 def design_of(agent): return choice(agent.gains.get("design", "differentiable"), "design")[0]
 
 def treated(agent):
-    kinds, usual = {"position_only": "position only", "task_space": "task space", "attitude": "attitude"}, "lagrangian"
+    kinds, usual = {each: each.replace("_", " ") for each in ("position_only", "task_space", "attitude", "passivity_filter")}, "lagrangian"
     return f"thrust {design_of(agent)}" if agent.law == "thrust" else kinds.get(agent.law, "chain" if agent.law in CHAIN_LAWS else usual)
 
 # Of tips with more than a position, or with more joints than coordinates.
@@ -945,7 +943,7 @@ def theorem(scenario):
     tip = "tip-velocity" if any("tip_velocity" in agent.gains for agent in agents) else "theorem-6" + max(map(extension, agents))
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
              "task space": tip, "attitude": "theorem-7", "chain": f"chains-{'track' if tracking else 'agree'}",
-             "position only": "position-only-tracks" if tracking else "remark-7"}
+             "position only": "position-only-tracks" if tracking else "remark-7", "passivity filter": "passivity-filter"}
     if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
     if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
@@ -977,7 +975,7 @@ def requirements(scenario):
         (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
         (reference != "tracking" and scenario.varying(), "bounded-weights"), (any(agent.pushes for agent in agents), "pushes-end"),
         (len(kinds) > 1 and not all(agent.tracks for agent in agents), "one-kind"),
-        (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if a.law in ("position_only", "task_space", "attitude"))),
+        (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if treated(a) == a.law.replace("_", " "))),
         ({"continuous"} in designs, "known-masses"), (any(each - {"continuous"} for each in designs), "thrust-gains"),
         (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
         (any("rotors" in agent.body for agent in flying), "every-wrench"),
@@ -992,12 +990,17 @@ def requirements(scenario):
     ]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
     for agent in agents:
-        tip, attitude, posed = agent.law == "task_space", agent.law == "attitude", extension(agent) == "-pose"
-        own = [(tip, "regular-jacobian"), (attitude, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
-               (agent.target, "bounded-target"), (agent.target and (attitude or posed), "nonzero-quaternion"), (posed, "start-attitude"),
+        tip, filtered, posed = agent.law == "task_space", agent.law == "passivity_filter", extension(agent) == "-pose"
+        turns, moved = agent.robot == "spacecraft", not filtered or not still(agent)
+        own = [(tip, "regular-jacobian"), (turns and moved, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
+               (agent.target, "bounded-target"), (agent.target and (turns or posed), "nonzero-quaternion"), (posed, "start-attitude"),
+               (filtered, "target-at-rest"),
                (tip and agent.robot == "urdf", "certain-regressor"), (tip and "bounds" in agent.gains, "lengths-within-bounds")]
         found |= {(each, agent.name) for condition, each in own if condition}
     return found
+
+# Whether each entry of a target is a constant.
+def still(agent): return all(attempt(constant_for_ever, derivative(tree)) == 0 for tree in agent.target or [])
 
 # Who follows a target by roots.
 def rooted(scenario):
@@ -1182,8 +1185,7 @@ def links(agent, root, locked):
         for joint in (joint for joint in joints if joint.find("parent").get("link") == name):
             kind, child = joint.get("type"), joint.find("child").get("link")
             such(kind in (*MOVING, "fixed"), "a joint is of a kind that no robot here has")
-            if kind == "fixed" or joint.get("name") in locked:
-                visit(child, own, turned)
+            if kind == "fixed" or joint.get("name") in locked: visit(child, own, turned)
             else:
                 rubs = sum(decimal(of.get("friction", "0")) for of in joint.findall("dynamics"))
                 found.append((kind == "prismatic", turned, rubs, []))
@@ -1360,8 +1362,7 @@ def coefficients(scenario):
     roots, design = roots_of(scenario.body), scenario.body.get("design")
     such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
     such(min(roots)[0] > 0 and (design != "continuous" or roots[0][1] == 0), "`roots_per_s` must be positive")
-    if "alpha" in scenario.body:
-        return positive(scenario.body["alpha"], "alpha"), positive(scenario.body.get("beta", 1), "beta")
+    if "alpha" in scenario.body: return positive(scenario.body["alpha"], "alpha"), positive(scenario.body.get("beta", 1), "beta")
     (a, b), (c, d) = roots[0], roots[-1]
     return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
 
@@ -1385,7 +1386,15 @@ def no_value(claim, agent, state):
 
 RATES = ["", "d"] + [f"d{k}" for k in range(2, 256)]
 STATES = [f"x{k}" for k in range(1, 256)] + [f"{d}x" for d in RATES] + [f"{d}x{k}" for d in RATES[1:16] for k in range(1, 33)]
+
+# With equal moments of inertia ΔωᵀM S(Δω) ω_d vanishes for whatever target.
+def rests(agent):
+    rows = listed(agent.body["inertia_kg_m2"], "inertia_kg_m2")
+    entries = [exact(x, "inertia_kg_m2") for row in rows for x in (row if isinstance(row, list) else [row])]
+    return still(agent) or entries in ([entries[0]] * 3, [entries[0] if k % 4 == 0 else 0 for k in range(9)])
+
 TEXT = {
+    "target-at-rest": lambda scenario, own: all(map(rests, own)),
     "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
     "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),
     "defined-terms": lambda scenario, _: all(everywhere(term) for a in scenario.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
@@ -1500,8 +1509,7 @@ def delays(claim, bound_s, enclosures, given):
         if kind == "formula_s":
             require(enclosures, body in shown and shown[body][0] >= 0, f"lacks `{body}`, or lets it become negative")
             worst, always = shown[body][1], always and shown[body][2]
-        elif kind in ("log", "hold_log"):
-            worst, always = logged(scenario, edge), False
+        elif kind in ("log", "hold_log"): worst, always = logged(scenario, edge), False
         elif worst is None:
             link = scenario.names[edge.source], scenario.names[edge.to]
             require(given, link in ages, f"lacks the link from {link[0]} to {link[1]}")
@@ -1571,12 +1579,10 @@ def number(claim, value):
         require(claim.proof, of and all(of), "is not so: an agent has no roots")
         require(value, 0 < stated <= min(min(of))[0], "is not a positive bound below all roots")
         require(claim.proof, claim.id == "hurwitz" or not any(b for roots in of for _, b in roots), "is not so: a root is complex")
-    elif claim.id == "manipulability":
-        require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
+    elif claim.id == "manipulability": require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
     elif claim.id == "common-order":
         require(value, all(len(agent.roots) == stated for agent in agents), "is not the order of all agents")
-    else:
-        require(value, all(end <= stated for agent in agents for end in agent.pushes), "comes before the end of a push")
+    else: require(value, all(end <= stated for agent in agents for end in agent.pushes), "comes before the end of a push")
     return said(stated)
 
 @rule("desired-dynamics", "routh no-routh")
@@ -1629,7 +1635,7 @@ def definite(node, rows, stated):
     require(stated, len(found) == n and min(found) > 0, "are not all positive")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
-    f"{law.replace('_', '-')}-gains": (law,) for law in ("task_space", "attitude", "position_only", "thrust")}
+    f"{law.replace('_', '-')}-gains": (law,) for law in ("task_space", "attitude", "position_only", "thrust", "passivity_filter")}
 
 # Numbers are positive, matrices are by their pivots; a mass that is not adapted is the true one.
 @rule(" ".join(ASKED_OF), "definite")
@@ -1876,8 +1882,7 @@ def determinant(rows):
 
 @rule("input-factor", "factor-away")
 def input_factor(claim):
-    for name, within, floor in factors(claim.scenario):
-        require(claim.proof, max(within[0], -within[1]) >= floor, f"is not so for {name}")
+    for name, within, floor in factors(claim.scenario): require(claim.proof, max(within[0], -within[1]) >= floor, f"is not so for {name}")
 
 @rule("input-factor", "factor")
 def small_factor(claim, agent):

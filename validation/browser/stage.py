@@ -7,6 +7,7 @@ Status 77 where chromium or chromedriver is not there. Needs nothing but Python.
 """
 
 import base64
+import csv
 import io
 import pathlib
 import struct
@@ -231,6 +232,35 @@ def film(browser, name, page):
     expect((width, height) == (1280, 720) and 1.2 < length < 6 and changed > 1000, f"{name}: a film of {width} by {height}, {length} s, {changed} bytes change")
 
 
+def flights(browser, name, page):
+    """Packets on their way are those of the table that the run wrote, and each is drawn."""
+    names = value(browser, 's.names()')
+    packets = [(row["from"], row["to"], float(row["send_s"]), row["delay_s"]) for row in csv.DictReader(page.with_name("packets.csv").open())]
+    arrived = 0
+    for t in [0.0, 1.0, 5.0, 17.33, 59.0]:
+        settled(browser, t)
+        edges = value(browser, f"s.flights({t})")
+        for edge in edges:
+            link = [(sent, took) for a, b, sent, took in packets if (a, b) == (names[edge["from"]], names[edge["to"]])]
+            under = sorted((sent, (t - sent) / float(took)) for sent, took in link if took and sent <= t < sent + float(took))
+            drawn = sorted((one["sent"], one["share"]) for one in edge["flights"] if not one["lost"])
+            same = len(under) == len(drawn) and all(abs(x - y) < 1e-3 for a, b in zip(under, drawn) for x, y in zip(a, b))
+            expect(same, f"{name}: at {t} s {drawn} are on their way, not {under}")
+            lost = {round(sent, 4) for sent, took in link if not took}
+            expect(all(round(one["sent"], 4) in lost for one in edge["flights"] if one["lost"]), f"{name}: at {t} s others are lost")
+            arrived += len(under)
+        dots = value(browser, 'document.querySelectorAll("#graph-picture .flight").length')
+        expect(dots == sum(len(edge["flights"]) for edge in edges), f"{name}: at {t} s there are {dots} dots")
+    expect(arrived > 5, f"{name}: only {arrived} packets")
+
+
+def marks(browser, name, late_s):
+    """What is heard late without packets was said as long ago as the delay."""
+    found = [one for t in [0.02, 1.0, 1.93] for edge in value(browser, f"s.flights({t})") for one in [dict(f, t=t) for f in edge["flights"]]]
+    expect(len(found) > 5, f"{name}: {len(found)} marks")
+    expect(all(0 <= f["share"] < 1 and abs(f["t"] - f["sent"] - f["share"] * late_s) < 1e-6 for f in found), f"{name}: marks {found[:3]}")
+
+
 def tips(browser, name):
     """What is drawn beside what the run recorded of the tip, at every row."""
     rows, worst = int(value(browser, "s.times().length")), 0.0
@@ -304,6 +334,9 @@ def main():
         for name in ["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"]:
             browser.open(run(name))
             tips(browser, name)
+        page = run("from-a-log")
+        browser.open(page)
+        flights(browser, "from-a-log", page)
         for name in ["six-arms", "theorem-7"]:
             browser.open(folder / name / "report.html")
             film(browser, name, folder / name / "report.html")
@@ -327,6 +360,8 @@ def main():
             browser.open(run(f"points-{count}", scenario))
             expect(value(browser, "s.tips(0).length") == count, f"{count} points: not all are there")
             drawings(browser, f"{count} points, with a hostile title")
+            if count == 12:
+                marks(browser, "points", 0.1)
             quiet(browser, f"{count} points, with a hostile title")
             speed(browser, f"{count} points", seconds)
     print(f"{checked} checks, {len(problems)} failed")

@@ -33,6 +33,17 @@ delay.constant_s = 0.1
 edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
 "#;
 
+const LED: &str = r#"[reference.leader]
+design = "continuous"
+roots_per_s = [1]
+gain = 30
+[law.known]
+damping.gain = 10
+[leader]
+name = "guide"
+motion.sinusoids = [{ waves = [{ amplitude = 2, rad_per_s = 3 }] }]
+"#;
+
 /// What changed V of the second cart, as if it had been sampled.
 fn injected() -> Vec<Injected> {
     vec![Injected {
@@ -54,13 +65,17 @@ fn injected() -> Vec<Injected> {
 
 /// Runs the carts, lets `change` have its way with the outcome, and writes their folder.
 fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
-    let scenario = read_scenario("carts", &SourceText::new("carts.toml", CARTS), None).unwrap();
+    write_of(CARTS, folder, change)
+}
+
+fn write_of(text: &str, folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
+    let scenario = read_scenario("carts", &SourceText::new("carts.toml", text), None).unwrap();
     let mut outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
     change(&scenario.setup, &mut outcome);
     let record = RunRecord {
         title: &scenario.title,
         scenario_name: &scenario.name,
-        scenario_text: CARTS,
+        scenario_text: text,
         inputs: &scenario.inputs,
         version: "0.1.0",
         setup: &scenario.setup,
@@ -84,6 +99,38 @@ fn rebuild(folder: &Path) -> Result<(), RestoreError> {
     let remarks = run.remarks(&verdicts, "0.1.0");
     run.write_report(&run.record(&verdicts, None, &remarks))?;
     Ok(())
+}
+
+/// A motion that leads stands in the tables beside those that follow, and is worked out again where they are read; one of a name that
+/// looks like a column of theirs as well.
+#[test]
+fn a_leader_has_columns_of_its_own() {
+    let led = CARTS
+        .replace("[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n", LED)
+        .replace("[[\"cart-1\", \"cart-2\"], [\"cart-2\", \"cart-1\"]]", "[[\"guide\", \"cart-1\"], [\"cart-1\", \"cart-2\"]]")
+        .replace("delay.constant_s = 0.1\n", "");
+    let folder = tempfile::tempdir().unwrap();
+    let outcome = write_of(&led, folder.path(), |_, _| {});
+    let mut table = csv::Reader::from_path(folder.path().join("trajectory.csv")).unwrap();
+    let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(header[header.len() - 2..], ["guide.q.1", "guide.dq.1"]);
+    assert_eq!(header.len(), outcome.recording.columns.len() + 3);
+    let mut rows = 0;
+    for row in table.records() {
+        let row: Vec<f64> = row.unwrap().iter().map(|v| v.parse().unwrap()).collect();
+        let (t_s, [q, dq]) = (row[0], [row[row.len() - 2], row[row.len() - 1]]);
+        assert!((q - 2.0 * (3.0 * t_s).sin()).abs() < 1e-12 && (dq - 6.0 * (3.0 * t_s).cos()).abs() < 1e-12, "{row:?}");
+        rows += 1;
+    }
+    assert_eq!(rows, 6);
+    for table in ["trajectory.parquet", "trajectory.csv"] {
+        let back = SavedRun::open(folder.path()).unwrap();
+        let verdicts = forwardstep_check::check(back.setup());
+        assert_eq!(back.remarks(&verdicts, "0.1.0"), [], "{table}");
+        assert_eq!(back.record(&verdicts, None, &[]).outcome.recording, outcome.recording, "{table}");
+        drop(back);
+        let _ = fs::remove_file(folder.path().join("trajectory.parquet"));
+    }
 }
 
 #[test]

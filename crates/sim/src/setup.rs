@@ -219,6 +219,8 @@ pub enum AxisUnit {
     Metre,
     /// A pure number, as an entry of a quaternion is.
     One,
+    /// Whatever a state of an abstract chain measures. Its rate is per second; of its input and its estimates nothing is known.
+    Own,
 }
 
 /// Initial values of one agent.

@@ -3,7 +3,7 @@
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Number;
 use forwardstep_sim::leader::FollowingDesign;
-use forwardstep_sim::{Adaptive, AgentSetup, AttitudeLaw, Known, Setup, TaskSpaceLaw};
+use forwardstep_sim::{Adaptive, AgentSetup, AttitudeLaw, Known, PassivityFilterLaw, Setup, TaskSpaceLaw};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -43,6 +43,8 @@ fn gains(agent: &AgentSetup, id: Id) -> Vec<(&'static str, &Gain)> {
         let own = [("damping", &law.damping), ("adaptation_gain", &law.adaptation), ("task_gain", &law.task_gain)];
         own.into_iter().chain(law.kinematic_adaptation.as_ref().map(|gain| ("kinematic_gain", gain))).collect()
     } else if let (Some(law), Id::AttitudeGains) = (agent.law.downcast::<AttitudeLaw>(), id) {
+        vec![("filter_gain_per_s", &law.filter), ("damping", &law.damping)]
+    } else if let (Some(law), Id::PassivityFilterGains) = (agent.law.downcast::<PassivityFilterLaw>(), id) {
         vec![("filter_gain_per_s", &law.filter), ("damping", &law.damping)]
     } else {
         Vec::new()

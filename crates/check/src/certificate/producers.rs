@@ -48,6 +48,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::PositiveGains, gains::definite),
     (Id::TaskSpaceGains, gains::definite),
     (Id::AttitudeGains, gains::definite),
+    (Id::PassivityFilterGains, gains::definite),
     (Id::PositionOnlyGains, gains::definite),
     (Id::ThrustGains, gains::definite),
     (Id::ChainGains, gains::definite),
@@ -75,6 +76,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::AppliedTorque, text),
     (Id::KnownMasses, text),
     (Id::KnownMomentum, text),
+    (Id::TargetAtRest, text),
     (Id::SmoothFriction, text),
     (Id::ParametersWithinBounds, bounds),
 ];

@@ -106,7 +106,7 @@ fn axes(setup: &Setup, gains: &ReferenceGains, power: &PowerBound) -> Option<[Ax
             unit: match axis.unit {
                 AxisUnit::Radian => " rad",
                 AxisUnit::Metre => " m",
-                AxisUnit::One => "",
+                AxisUnit::One | AxisUnit::Own => "",
             },
             tracking,
             disagreement: gains.rms_s * tracking,

@@ -262,7 +262,9 @@ fn in_unit(value: f64, unit: &str, r: usize) -> String {
         1 => "/s".into(),
         power => format!("/s{}", superscript(power)),
     };
-    format!("{} {unit}{per}", digits(value))
+    // What is a pure number is still one per second.
+    let unit = if unit == "1" && per.is_empty() { "" } else { unit };
+    format!("{} {unit}{per}", digits(value)).trim_end().to_owned()
 }
 
 /// That of an input.

@@ -55,7 +55,8 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
         let (agent, axis) = (agent_name(setup, peak.agent), torque_words(setup, peak.agent, peak.axis));
-        rows.push(("peak torque", format!("{} {unit}, {agent}, {axis} at {:.2} s", short(peak.value.abs()), peak.t_s)));
+        let value = with_unit(peak.value.abs(), &unit);
+        rows.push(("peak torque", format!("{value}, {agent}, {axis} at {:.2} s", peak.t_s)));
     }
     if !metrics.limits_reached.is_empty() {
         rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
@@ -64,7 +65,8 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
     if let Some(gap) = record.digital.as_ref().and_then(|cost| cost.largest_gap) {
         let unit = unit(setup, gap.agent, Signal::Position, gap.axis);
         let agent = agent_name(setup, gap.agent);
-        let gap = format!("{} {unit} from the continuous run ({agent} at {:.2} s)", short(gap.value.abs()), gap.t_s);
+        let value = with_unit(gap.value.abs(), &unit);
+        let gap = format!("{value} from the continuous run ({agent} at {:.2} s)", gap.t_s);
         rows.push(("cost of going digital", gap));
     }
     rows.extend(injected(setup, &record.injected));
@@ -177,6 +179,11 @@ fn names(folder: &Path, files: &[PathBuf]) -> String {
         Some(report) => format!("{} and {} others in that folder", shown(report), files.len() - 1),
         None => shown(folder).to_string(),
     }
+}
+
+/// With its unit, but for a pure number.
+fn with_unit(value: f64, unit: &str) -> String {
+    if unit == "1" { short(value) } else { format!("{} {unit}", short(value)) }
 }
 
 #[cfg(test)]

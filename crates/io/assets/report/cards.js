@@ -100,8 +100,8 @@ const spansDecades = (series) => {
 };
 
 const balances = {
-  v: { columns: signals.lyapunov, log: true, unit: "J" },
-  sum: { columns: signals.balance_sum, log: false, unit: "J, flat when the proof’s identity holds" },
+  v: { columns: signals.lyapunov, log: true, unit: index.energy },
+  sum: { columns: signals.balance_sum, log: false, unit: `${index.energy && `${index.energy}, `}flat when the proof’s identity holds` },
   error: { columns: signals.balance_residual, log: true, unit: "of V(0)" },
 };
 
@@ -149,7 +149,7 @@ const cards = {
       { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
       { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])), first: (picks, options) => liveliest(picks[0], options) },
     ],
-    build: ([who, what]) => ({ grid: "estimates", unit: "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
+    build: ([who, what]) => ({ grid: "estimates", unit: index.energy && "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
   },
   balance: {
     picks: [{ id: "balance", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
@@ -158,6 +158,17 @@ const cards = {
       // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
       const log = balances[which].log && spansDecades(ofAgents(columns, null, {}, true));
       return { unit, log, series: ofAgents(columns, null, {}, log) };
+    },
+  },
+  cascade: {
+    picks: [{ id: "interval", options: [["", "length"], ...joints.map((j) => [String(j.axis), j.name])] }],
+    build: ([axis]) => {
+      const c = index.cascade;
+      if (!c) return { series: [] };
+      const line = (label, k, more) => (k == null ? [] : [{ label, colour: colour("--ink"), width: 2.2, values: data.values("main", k, axis === ""), ...more }]);
+      if (axis === "") return { unit: c.unit, log: true, key: true, series: [...line("guaranteed for s ≡ 0", c.guaranteed, { dash: [6, 4], width: 1.4 }), ...line("length", c.width)] };
+      const ends = { dash: [6, 4], width: 1.4 };
+      return { unit: unitOf(+axis, (u) => u.q), series: [...ofAgents(signals.q, +axis), ...line("lowest of all", c.low[+axis], ends), ...line("highest of all", c.high[+axis], ends)] };
     },
   },
   delay: {
@@ -180,7 +191,7 @@ for (const { id, entries } of index.families) {
       if (!entry) return { series: [] };
       const wanted = entry.wanted.length ? ofAgents(entry.wanted, null, { suffix: ", wanted", dash: [4, 3], width: 1.1 }) : [];
       const lines = entry.lines.length > 6 ? [] : entry.lines;
-      return { unit: entry.unit === "1" ? "" : entry.unit, lines, series: [...ofAgents(entry.series, null), ...wanted] };
+      return { unit: entry.unit, lines, series: [...ofAgents(entry.series, null), ...wanted] };
     },
   };
 }

@@ -107,7 +107,7 @@ const side = (() => {
   slider.max = String(end);
   slider.step = String(end / 2000);
   // What is measured where bodies stand, as the page of one run says it.
-  const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`);
+  const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd());
   const views = [...document.querySelectorAll(".scene")].map((card, k) => {
     const canvas = element("canvas");
     canvas.setAttribute("role", "img");

@@ -5,7 +5,8 @@ const vertices = bodies.length;
 const ageAt = (delay, time) => (delay === null ? null : data.at("delays", delay, data.place("delays", time)));
 const oldest = Math.max(1e-12, ...index.delays.flatMap((d) => data.values("delays", d.series).filter((v) => v !== null)));
 
-const heardAt = (time) => {
+// Messages on their way are left out that are not under way for `pace`, s.
+const heardAt = (time, pace = 0) => {
   let [low, high] = [0, spans.length - 1];
   while (low < high) {
     const half = (low + high + 1) >> 1;
@@ -15,7 +16,7 @@ const heardAt = (time) => {
   const graph = spans[low]?.[2] ?? 0;
   const edges = (scene.graphs[graph] ?? []).filter(([from, to]) => from < vertices && to < vertices).map(([from, to, delay]) => {
     const age = ageAt(delay, time);
-    return { from, to, age, share: age === null ? 0 : Math.min(1, age / oldest) };
+    return { from, to, age, share: age === null ? 0 : Math.min(1, age / oldest), flights: flightsOf({ from, to, delay }, time, pace) };
   });
   return { graph, edges };
 };
@@ -35,6 +36,7 @@ const graphWords = ({ edges }) => {
     ...(late ? [`Oldest message heard: ${number(late.age, 3)} s (${name(late.from)} → ${name(late.to)}).`] : []),
     ...(silent.length ? [`Nobody hears ${someNames(silent)}.`] : []),
     ...(deaf.length ? [`Nothing is heard by ${someNames(deaf)}.`] : []),
+    ...(flightWords ? [flightWords] : []),
   ].join(" ");
 };
 
@@ -53,7 +55,7 @@ const graphPlaces = bodies.map((_, v) => {
 });
 const graphIn = (place) => {
   const picture = svg("svg", { viewBox: `0 0 ${GRAPH.width} ${GRAPH.height}`, role: "img", class: "now" });
-  const arrows = svg("g", {});
+  const [arrows, dots] = [svg("g", {}), svg("g", {})];
   const r = vertices > 24 ? 2.5 : 7;
   const nodes = bodies.map((body, v) => {
     const { x, y, side, top } = graphPlaces[v];
@@ -68,25 +70,35 @@ const graphIn = (place) => {
     }
     return group;
   });
-  picture.append(arrows, ...nodes);
+  picture.append(arrows, dots, ...nodes);
   place.append(picture);
   let shown = null;
+  const along = (from, to) => {
+    const [a, b] = [graphPlaces[from], graphPlaces[to]];
+    const far = Math.hypot(b.x - a.x, b.y - a.y) || 1;
+    const [ux, uy] = [(b.x - a.x) / far, (b.y - a.y) / far];
+    const p = { x: a.x + ux * (r + 2) - 2.4 * uy, y: a.y + uy * (r + 2) + 2.4 * ux };
+    const q = { x: b.x - ux * (r + 3) - 2.4 * uy, y: b.y - uy * (r + 3) + 2.4 * ux };
+    return { p, q, ux, uy, far };
+  };
   return ({ graph, edges }) => {
     // Ages change all the time, arrows only with the graph.
     picture.setAttribute("aria-label", `The graph: ${graphWords({ graph, edges })}`);
     if (shown !== graph) {
       shown = graph;
       arrows.replaceChildren(...edges.slice(0, 2000).map(({ from, to }) => {
-        const [a, b] = [graphPlaces[from], graphPlaces[to]];
-        const far = Math.hypot(b.x - a.x, b.y - a.y) || 1;
-        const [ux, uy] = [(b.x - a.x) / far, (b.y - a.y) / far];
-        const p = { x: a.x + ux * (r + 2) - 2.4 * uy, y: a.y + uy * (r + 2) + 2.4 * ux };
-        const q = { x: b.x - ux * (r + 3) - 2.4 * uy, y: b.y - uy * (r + 3) + 2.4 * ux };
+        const { p, q, ux, uy, far } = along(from, to);
         const head = Math.min(7, 0.4 * far);
         const points = [[q.x, q.y], [q.x - head * ux - 0.4 * head * uy, q.y - head * uy + 0.4 * head * ux], [q.x - head * ux + 0.4 * head * uy, q.y - head * uy - 0.4 * head * ux]];
         return svg("g", { class: `edge a${from}` }, svg("line", { x1: p.x, y1: p.y, x2: q.x - 0.7 * head * ux, y2: q.y - 0.7 * head * uy }), svg("polygon", { points: points.join(" ") }));
       }));
     }
+    const flying = edges.length > 120 ? [] : edges.flatMap(({ from, to, flights }) => {
+      const { p, q } = along(from, to);
+      return flights.map(({ share, lost }) => ({ from, lost, share, x: p.x + share * (q.x - p.x), y: p.y + share * (q.y - p.y) }));
+    });
+    dots.replaceChildren(...flying.map(({ from, lost, share, x, y }) =>
+      svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: 3, class: `flight a${from}${lost ? " lost" : ""}`, opacity: lost ? (1 - share).toFixed(2) : 1 })));
     if (edges.length <= 200) edges.forEach(({ share }, k) => arrows.children[k]?.setAttribute("opacity", (1 - 0.6 * share).toFixed(2)));
   };
 };

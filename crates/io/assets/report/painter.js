@@ -149,11 +149,11 @@ const drawTrails = (ctx, see, frame, colours, hidden, alone) => {
   }
 };
 
-// Who hears whom: from the sender towards the receiver, the fainter the older what is heard.
+// Who hears whom: from the sender towards the receiver, the fainter the older what is heard, with what is on its way.
 const drawEdges = (ctx, see, frame, colours, heard) => {
   const at = new Map(frame.nodes.map(({ body, at }) => [body.vertex, see.project(at)]));
   const many = heard.edges.length > 120;
-  for (const { from, to, share } of heard.edges) {
+  for (const { from, to, share, flights } of heard.edges) {
     const [a, b] = [at.get(from), at.get(to)];
     if (!a || !b) continue;
     const far = Math.hypot(b.x - a.x, b.y - a.y);
@@ -170,7 +170,18 @@ const drawEdges = (ctx, see, frame, colours, heard) => {
     ctx.moveTo(p.x, p.y);
     ctx.quadraticCurveTo(c.x, c.y, q.x, q.y);
     ctx.stroke();
-    if (!many) arrowHead(ctx, c, q, 8);
+    if (many) continue;
+    arrowHead(ctx, c, q, 8);
+    for (const { share: s, lost } of flights) {
+      const [wp, wc, wq] = [(1 - s) ** 2, 2 * s * (1 - s), s ** 2];
+      ctx.beginPath();
+      ctx.arc(wp * p.x + wc * c.x + wq * q.x, wp * p.y + wc * c.y + wq * q.y, 3.2, 0, 2 * Math.PI);
+      ctx.globalAlpha = lost ? 1 - s : 1;
+      ctx.lineWidth = lost ? 1.4 : 1;
+      ctx.strokeStyle = lost ? colours.agents[from] : colours.surface;
+      if (!lost) ctx.fill();
+      ctx.stroke();
+    }
   }
   ctx.globalAlpha = 1;
 };

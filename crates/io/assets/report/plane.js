@@ -2,18 +2,17 @@
 
 // Whatever all agents have on the grid of the plots, by name: coordinates, their rates, and what only some systems have.
 // The coordinates of an attitude are no angles, and no angular velocity is the rate of one of them.
-const attitudes = joints.length > 0 && joints.every((j) => unitOf(j.axis, (u) => u.q) === "1");
+const attitudes = joints.length > 0 && joints.every((j) => unitOf(j.axis, (u) => u.q) === "" && unitOf(j.axis, (u) => u.dq) === "rad/s");
 const velocityOf = (name) => (attitudes ? `angular velocity, ${name}` : `velocity, ${name}`);
 const quantities = (() => {
-  const plain = (unit) => (unit === "1" ? "" : unit);
   const perAxis = (columns, leader, name, unit) =>
-    joints.map((j) => ({ name: name(j.name), unit: plain(unitOf(j.axis, unit)), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
+    joints.map((j) => ({ name: name(/^\d+$/.test(j.name) ? `axis ${j.name}` : j.name), unit: unitOf(j.axis, unit), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
   const headings = index.families.map(({ id }) => document.querySelector(`[data-plot="${id}"] h3`));
   const titles = headings.map((heading, k) => heading?.firstChild?.textContent ?? index.families[k].id);
   const families = index.families.flatMap(({ id, entries }, k) => {
     // Cards of one title tell themselves apart by their letters.
     const letters = titles.filter((title) => title === titles[k]).length > 1 ? ` ${headings[k]?.querySelector(".by")?.textContent ?? ""}` : "";
-    return entries.map((e) => ({ name: `${titles[k]}${letters}${e.name && `: ${e.name}`}`, unit: plain(e.unit), of: e.series, wanted: e.wanted, family: id }));
+    return entries.map((e) => ({ name: `${titles[k]}${letters}${e.name && `: ${e.name}`}`, unit: e.unit, of: e.series, wanted: e.wanted, family: id }));
   });
   return [...perAxis(signals.q, index.leader?.q, (name) => name, (u) => u.q), ...perAxis(signals.dq, index.leader?.dq, velocityOf, (u) => u.dq), ...families]
     .filter(({ of }) => of.some((k) => k != null));

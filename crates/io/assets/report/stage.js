@@ -57,7 +57,8 @@ const stage = (() => {
     ctx.clearRect(0, 0, width, height);
     const frame = frameAt(now.t, hidden);
     const see = looking(width, height, frame.nodes);
-    const heard = heardAt(now.t);
+    // What passes in less than six frames only flickers.
+    const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
     if (!now.flat) lighting.draw(see, frame, colours);
     paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
@@ -208,7 +209,7 @@ const stage = (() => {
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
     view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
-    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`;
+    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
     tip.textContent = railed ? "each on a line of its own" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
   };
@@ -231,6 +232,9 @@ Object.assign(document.getElementById("stage"), {
   go: stage.go,
   time: () => stage.now.t,
   flat: () => stage.now.flat,
+  names: () => bodies.map((body) => body.name),
+  flights: (t) => heardAt(t).edges,
+  gap: () => (index.disagreement ? data.values("main", index.disagreement.overall).map((size, row) => [data.t("main")[row], size]) : []),
   tips: (t) => bodies.map((body) => trailPoint(body, data.place("scene", t))),
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,

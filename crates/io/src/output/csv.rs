@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 use forwardstep_sim::recording::Recording;
 use forwardstep_sim::setup::Setup;
 
+use super::leader::LeaderColumn;
 use super::names;
 use super::restore_error::TableError;
 use super::table::NamedColumns;
@@ -12,11 +13,15 @@ use super::table::NamedColumns;
 /// Writes header and rows; values that are not finite are `NaN`, `inf` and `-inf`.
 pub(crate) fn write(out: &mut impl Write, setup: &Setup, recording: &Recording) -> std::io::Result<()> {
     let mut table = ::csv::Writer::from_writer(out);
-    table.write_record(names::table_header(setup, recording)).map_err(io_error)?;
+    let mut header = names::table_header(setup, recording);
+    let leader = LeaderColumn::all(setup, &header);
+    header.extend(leader.iter().map(|column| column.name.clone()));
+    table.write_record(header).map_err(io_error)?;
     let mut field = Vec::new();
     for (row, t_s) in recording.t_s.iter().enumerate() {
         let columns = recording.columns.iter().map(|c| c.values.get(row).copied().unwrap_or(f64::NAN));
-        for value in std::iter::once(*t_s).chain(columns) {
+        let leads = leader.iter().map(|column| column.at(*t_s));
+        for value in std::iter::once(*t_s).chain(columns).chain(leads) {
             field.clear();
             write!(field, "{value:?}")?; // the shortest text that reads back as the same number
             table.write_field(&field).map_err(io_error)?;

@@ -45,6 +45,7 @@ mod how;
 mod injected;
 mod inputs;
 pub mod journal;
+mod leader;
 mod metrics;
 pub mod names;
 mod number;

@@ -172,9 +172,17 @@ pub fn gap_unit(setup: &Setup) -> String {
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let own = axis_unit(setup, agent, axis);
+    // Whoever has one axis of its own unit has others of no other.
+    if axis_unit(setup, agent, 0) == Some(AxisUnit::Own) {
+        return match signal.row().unit {
+            Unit::Axis(1) => "1/s".into(),
+            Unit::Axis(k) if k > 1 => format!("1/s^{k}"),
+            _ => "1".into(),
+        };
+    }
     let letters = |unit: Option<AxisUnit>| match unit {
         Some(AxisUnit::Metre) => "m",
-        Some(AxisUnit::One) => "1",
+        Some(AxisUnit::One | AxisUnit::Own) => "1",
         Some(AxisUnit::Radian) | None => "rad",
     };
     // Rates of an attitude are those of angles.

@@ -3,8 +3,6 @@
 use std::io::Write;
 use std::sync::Arc;
 
-use forwardstep_sim::recording::Recording;
-use forwardstep_sim::setup::Setup;
 use parquet::basic::{Compression, Encoding, Repetition, Type as PhysicalType};
 use parquet::data_type::DoubleType;
 use parquet::errors::Result;
@@ -13,6 +11,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
+use super::leader::LeaderColumn;
 use super::names;
 use super::record::RunRecord;
 
@@ -22,7 +21,9 @@ pub(crate) const ROWS_PER_GROUP: usize = 8192;
 /// Writes the recording with title, digest, version and units in the file's metadata.
 pub(crate) fn write(out: &mut (impl Write + Send), record: &RunRecord<'_>) -> Result<()> {
     let recording = &record.outcome.recording;
-    let header = names::table_header(record.setup, recording);
+    let mut header = names::table_header(record.setup, recording);
+    let leader = LeaderColumn::all(record.setup, &header);
+    header.extend(leader.iter().map(|column| column.name.clone()));
     let fields = header
         .iter()
         .map(|name| {
@@ -36,7 +37,7 @@ pub(crate) fn write(out: &mut (impl Write + Send), record: &RunRecord<'_>) -> Re
         .set_compression(Compression::SNAPPY)
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-        .set_key_value_metadata(Some(metadata(record, &header)))
+        .set_key_value_metadata(Some(metadata(record, &header, &leader)))
         .build();
     let mut file = SerializedFileWriter::new(out, schema, Arc::new(properties))?;
     let rows = recording.t_s.len();
@@ -59,27 +60,36 @@ pub(crate) fn write(out: &mut (impl Write + Send), record: &RunRecord<'_>) -> Re
             column.typed::<DoubleType>().write_batch(values, None, None)?;
             column.close()?;
         }
+        for own in &leader {
+            let Some(mut column) = group.next_column()? else { break };
+            padded.clear();
+            padded.extend(recording.t_s[range.clone()].iter().map(|t_s| own.at(*t_s)));
+            column.typed::<DoubleType>().write_batch(&padded, None, None)?;
+            column.close()?;
+        }
         group.close()?;
     }
     file.close()?;
     Ok(())
 }
 
-fn metadata(record: &RunRecord<'_>, header: &[String]) -> Vec<KeyValue> {
+fn metadata(record: &RunRecord<'_>, header: &[String], leader: &[LeaderColumn<'_>]) -> Vec<KeyValue> {
     let entry = |key: &str, value: String| KeyValue::new(format!("forwardstep.{key}"), Some(value));
     vec![
         entry("title", record.title.into()),
         entry("scenario", record.scenario_name.into()),
         entry("scenario_digest_blake3", record.digest()),
         entry("version", record.version.into()),
-        entry("units", units(record.setup, &record.outcome.recording, header)),
+        entry("units", units(record, header, leader)),
     ]
 }
 
 /// A JSON object from column names to units.
-fn units(setup: &Setup, recording: &Recording, header: &[String]) -> String {
-    let columns = recording.columns.iter().map(|c| names::unit(setup, c.agent, c.signal, c.axis));
-    let units = std::iter::once("s".to_owned()).chain(columns);
+fn units(record: &RunRecord<'_>, header: &[String], leader: &[LeaderColumn<'_>]) -> String {
+    let columns = record.outcome.recording.columns.iter();
+    let columns = columns.map(|c| names::unit(record.setup, c.agent, c.signal, c.axis));
+    let leads = leader.iter().map(|column| column.unit.clone());
+    let units = std::iter::once("s".to_owned()).chain(columns).chain(leads);
     let object: serde_json::Map<_, _> = header.iter().cloned().zip(units.map(serde_json::Value::from)).collect();
     serde_json::Value::Object(object).to_string()
 }

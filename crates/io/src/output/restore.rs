@@ -16,6 +16,7 @@ use serde::Deserialize;
 use super::error::OutputError;
 use super::folder::RunFolder;
 use super::journal::JOURNAL;
+use super::leader::LeaderColumn;
 use super::metrics::Metrics;
 use super::record::{GoalOutcome, RunRecord};
 use super::remark::Remark;
@@ -390,6 +391,10 @@ pub(super) fn assign(
             }
             None => missing.push((column.agent, column.signal, column.axis, name)),
         }
+    }
+    // What leads is worked out again.
+    for column in LeaderColumn::all(setup, &header) {
+        found.remove(&column.name);
     }
     if let Some(column) = order.into_iter().find(|name| found.contains_key(name)) {
         return Err(TableError::UnknownColumn { column });

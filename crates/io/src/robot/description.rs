@@ -70,6 +70,7 @@ impl RobotDescription {
                 AxisUnit::Radian => ("rad", "N m"),
                 AxisUnit::Metre => ("m", "N"),
                 AxisUnit::One => ("1", "N m"),
+                AxisUnit::Own => ("1", "1"),
             };
             JointDescription {
                 name: axis.name.clone(),

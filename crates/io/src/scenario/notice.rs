@@ -145,7 +145,7 @@ impl Notice {
         let unit = match agent.robot.axes[axis].unit {
             AxisUnit::Radian => " rad",
             AxisUnit::Metre => " m",
-            AxisUnit::One => "",
+            AxisUnit::One | AxisUnit::Own => "",
         };
         Some(Notice::StartBeyondLimits {
             agent: agent.name.clone(),

@@ -254,12 +254,12 @@ impl<'a> StartReader<'a> {
             return Err(fault(place, ValueProblem::SameQuantity { first: key, second }));
         }
         if let Some(unit) = unit
-            && let Some(axis) = self.robot.axes.iter().find(|axis| axis.unit != unit)
+            && let Some(axis) = self.robot.axes.iter().find(|axis| axis.unit != unit && axis.unit != AxisUnit::Own)
         {
             let unit = match axis.unit {
                 AxisUnit::Radian => "rad",
                 AxisUnit::Metre => "m",
-                AxisUnit::One => "pure numbers",
+                AxisUnit::One | AxisUnit::Own => "pure numbers",
             };
             let (agent, axis) = (self.name.to_owned(), axis.name.clone());
             return Err(fault(value, ScenarioProblem::Unit { key, agent, axis, unit, any }));

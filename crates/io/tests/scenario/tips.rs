@@ -137,7 +137,7 @@ const TIP_CASES: &[Case] = &[
     ("[goal]", "[[external_wrenches]]\non = [\"arm\"]\nby.disturbance = [1, 0, 0]\n[goal]",
         "test.toml:30:18: `disturbance` does not act on `arm`", "what acts on it is `effort`, `force_n` or `torque_n_m`, `wrench`"),
     ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, tip_velocity = 0.01 }\n[goal]",
-        "test.toml:33:34: the noise of the velocities of tips is 0.01, but no law measures the velocity of a tip", "leave it out"),
+        "test.toml:30:36: the noise of the velocities of tips is 0.01, but no law measures the velocity of a tip", "leave it out"),
     ("[goal]", "[control]\nsample_hz = 1000\nnoise = { seed = 1, velocity = -1 }\n[goal]",
         "test.toml:30:32: `noise.velocity` is -1, but must not be negative", ""),
 ];

@@ -49,12 +49,12 @@ pub(super) fn too_many(agent: &AgentSetup, need: usize, got: usize) -> SetupErro
     SetupError::StartOfReference { agent: agent.name.clone(), error }
 }
 
-/// Whoever agrees with a vehicle has a position in m. (An arm and a cart may agree on a number.)
+/// Whoever agrees with a vehicle has a position in m, or in a unit of its own. (An arm and a cart may agree on a number.)
 fn same_space(setup: &Setup) -> Result<(), SetupError> {
     let moves = |agent: &&AgentSetup| agent.robot.interface().position == PositionKind::Point;
     let Some(vehicle) = setup.agents.iter().find(moves) else { return Ok(()) };
     for agent in &setup.agents {
-        if let Some(axis) = agent.robot.axes.iter().find(|axis| axis.unit != AxisUnit::Metre) {
+        if let Some(axis) = agent.robot.axes.iter().find(|axis| !matches!(axis.unit, AxisUnit::Metre | AxisUnit::Own)) {
             let (vehicle, agent) = (vehicle.name.clone(), agent.name.clone());
             return Err(SetupError::UnitsDiffer { vehicle, agent, axis: axis.name.clone() });
         }

@@ -65,6 +65,65 @@ pub struct TaskMotionMeasured<'a> {
 /// **Source**: own derivation, in the manner of what Remark 9 compares Theorem 6 with. **Measures**: q, q̇, x, ẋ. **Transmits**: nothing.
 /// **Requires**: as [`TaskSpace`], and ẋ.
 /// **Guarantees**: Δx → 0 and Δẋ → 0.
+///
+/// V loses sᵀK s + κ α ΔxᵀK*Δx, though neither ϑ nor the lengths are known:
+///
+/// ```
+/// use forwardstep_core::Gain;
+/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, TaskSpace, TaskSpaceByVelocity, Truth};
+/// use forwardstep_core::law::SlotineLi;
+/// use forwardstep_core::plant::{Mechanical, Plant, TaskArm, WatchedTaskArm};
+/// use forwardstep_core::reference::Heard;
+/// use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
+///
+/// let number = |k: f64, size: usize| Gain::Number(k).resolve(size, &[]);
+/// let tip = PlanarTip { length_m: [1.0, 0.8] };
+/// let law = TaskSpaceByVelocity(TaskSpace {
+///     robot: PlanarArm,
+///     tip,
+///     law: SlotineLi { damping: number(8.0, 2)?, adaptation: Some(number(3.0, 5)?), bounds: None },
+///     task_gain: number(20.0, 2)?,
+///     attitude_gain: 1.0,
+///     null_space: None,
+///     kappa: 1.5,
+///     alpha: 2.0,
+///     kinematic_adaptation: Some(number(0.5, 2)?),
+///     bounds: None,
+///     estimate_start: vec![1.0; 5],
+///     kinematic_start: vec![0.9, 0.9],
+///     determinant_floor: 0.1,
+/// });
+/// let theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta().to_vec();
+/// let arm = Mechanical { robot: PlanarArm, theta };
+/// let plant = WatchedTaskArm(TaskArm { arm, tip, tip_theta: vec![1.0, 0.8] });
+/// let target = [[0.9, 0.1, 0.0, 0.0, 0.0], [0.8, 0.0, -0.2, 0.0, 0.0]];
+/// let total = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
+/// let (size, shown_size) = (total(law.states()), total(law.shown()));
+///
+/// // V and its loss, and where plant and law are after a time h; x is measured, and ẋ.
+/// let after = |motion: &[f64], state: &[f64], h: f64| -> Result<(Balance, Vec<f64>, Vec<f64>), Box<dyn std::error::Error>> {
+///     let mut output = [0.0; 8];
+///     plant.output(&mut plant.scratch(), motion, &mut output)?;
+///     let moved: Vec<[f64; 5]> = target.iter().map(|p| [p[0] + h * p[1], p[1] + h * p[2], p[2], 0.0, 0.0]).collect();
+///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&moved[..]) };
+///     let mut state = state.to_vec();
+///     if state.is_empty() {
+///         state.resize(size, 0.0);
+///         law.start(&mut law.scratch(), given, &[], &mut state)?;
+///     }
+///     let mut scratch = law.scratch();
+///     let (mut input, mut d_state, mut shown, mut rate) = ([0.0; 2], vec![0.0; size], vec![0.0; shown_size], [0.0; 4]);
+///     law.evaluate(&mut scratch, given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+///     plant.rate(&mut plant.scratch(), motion, &input, &[], &mut rate)?;
+///     let balance = law.balance(&mut scratch, Truth { plant: &plant, state: motion, external: &[] }, given, &state, &shown)?;
+///     let step = |x: &[f64], dx: &[f64]| x.iter().zip(dx).map(|(x, dx)| x + 1e-7 * dx).collect();
+///     Ok((balance, step(motion, &rate), step(&state, &d_state)))
+/// };
+/// let (now, motion, state) = after(&[0.2, 1.1, 0.4, -0.3], &[], 0.0)?;
+/// let (then, ..) = after(&motion, &state, 1e-7)?;
+/// assert!(((then.value - now.value) / 1e-7 + now.dissipation).abs() < 1e-4 * now.dissipation);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct TaskSpaceByVelocity<R, T>(pub TaskSpace<R, T>);
 

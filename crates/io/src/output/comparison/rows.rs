@@ -262,6 +262,8 @@ fn jump_cell(s: &Subject<'_>, jump: LargestJump, r: usize, letter: &str) -> Cell
         1 => "/s".into(),
         power => format!("/s{}", superscript(i32::try_from(power).unwrap_or(i32::MAX))),
     };
+    // What is a pure number is still one per second.
+    let unit = if unit.is_empty() && !per.is_empty() { "1" } else { unit };
     let mut cell = Cell::number(jump.size, &format!("{unit}{per}"));
     if !letter.is_empty() && cell.because.is_none() {
         cell.words = format!("{letter}, by {}", cell.words);

@@ -77,7 +77,7 @@ impl<'a> Plots<'a> {
             Panel {
                 title: shared_axis_words(setup, axis),
                 x: Across::Time,
-                y: format!("{letter} in {units}"),
+                y: format!("{letter}{}", text::in_unit(&units)),
                 log: false,
                 lines: owners.iter().map(line).collect(),
                 guide: guide(axis),
@@ -181,10 +181,7 @@ impl<'a> Plots<'a> {
             if self.record.prediction.as_ref().is_some_and(|prediction| prediction.course().is_some()) {
                 legend.push(("predicted, dashed".into(), ink));
             }
-            let unit = match names::gap_unit(self.record.setup) {
-                unit if unit.is_empty() => unit,
-                unit => format!(" in {unit}"),
-            };
+            let unit = text::in_unit(&names::gap_unit(self.record.setup));
             let guide = self.record.goal.and_then(|outcome| Some((outcome.goal.bound()?, "goal".to_owned())));
             panels.push(Panel {
                 title: String::new(),

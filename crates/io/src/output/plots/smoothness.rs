@@ -4,6 +4,7 @@ use forwardstep_check::smoothness::{Filters, OfOrder, Trace};
 
 use super::super::error::EncodeError;
 use super::super::palette::{self, Ground};
+use super::super::report::text;
 use super::figure::{Across, Figure, Line, Panel};
 
 /// What is beside the measured line.
@@ -40,7 +41,7 @@ pub fn plot_orders(orders: &[OfOrder], traces: &[Trace], at_s: f64, unit: &str) 
             Panel {
                 title: "The torque around a jump of what is heard".into(),
                 x: Across::Stretch,
-                y: format!("change of τ in {unit}"),
+                y: format!("change of τ{}", text::in_unit(&unit)),
                 log: false,
                 lines: traces.iter().map(trace).collect(),
                 guide: None,
@@ -89,7 +90,7 @@ pub fn plot_filters(filters: &Filters, unit: &str) -> Result<String, EncodeError
         panels: vec![Panel {
             title: String::new(),
             x: Across::Log("ε in s"),
-            y: format!("largest jump of τ in {unit}"),
+            y: format!("largest jump of τ{}", text::in_unit(&unit)),
             log: true,
             lines: vec![Line { colour: SOFT, width: 1, points: inverse }, Line { colour: measured, width: 2, points }],
             guide: None,

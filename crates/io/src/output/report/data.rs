@@ -1,6 +1,7 @@
 //! What the page's plots are drawn from: a JSON index and one block of numbers.
 
 use base64::Engine;
+use forwardstep_check::prediction::CascadeSpread;
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Path;
 use serde::Serialize;
@@ -11,6 +12,7 @@ use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
+use super::cascade::CascadeIndex;
 use super::families::{Family, FamilyIndex};
 use super::network::{self, Gantt};
 use super::scene::Scene;
@@ -37,6 +39,8 @@ pub(crate) struct Payload {
     pub(crate) block: String,
     /// Whether bodies are drawn, and not points alone.
     pub(crate) solid: bool,
+    /// Whether there are cascaded variables.
+    pub(crate) cascade: bool,
     /// What was left out, for the reader.
     pub(crate) notes: Vec<String>,
 }
@@ -56,6 +60,10 @@ struct Index {
     delays: Vec<DelayIndex>,
     scene: Scene,
     leader: Option<LeaderIndex>,
+    /// Where the cascaded variables are defined.
+    cascade: Option<CascadeIndex>,
+    /// The unit of V.
+    energy: String,
 }
 
 /// What leads and is no agent: its motion beside those of the agents.
@@ -235,6 +243,8 @@ impl Payload {
             };
             LeaderIndex { name: leader.name.clone(), q: derivative(0), dq: derivative(1) }
         });
+        let spread = CascadeSpread::of(record.setup, &record.outcome.recording).ok();
+        let cascade = spread.map(|spread| CascadeIndex::of(record, &spread, &mut |values| main.add(values, false)));
         let (scene, space) = Scene::of(record.setup, table, timeline);
         let solid = scene.is_solid();
 
@@ -268,11 +278,14 @@ impl Payload {
             delays,
             scene,
             leader,
+            cascade,
+            energy: text::unit(&names::unit(record.setup, 0, Signal::Lyapunov, 0)),
         };
         let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
         let series = [&main.values, &estimates.values].into_iter().chain(delays).chain([&space.values]);
-        Payload { json: harmless_json(&index), block: block(times, series), solid, notes }
+        let cascade = index.cascade.is_some();
+        Payload { json: harmless_json(&index), block: block(times, series), solid, cascade, notes }
     }
 }
 

@@ -3,6 +3,7 @@
 //! The page is written here in words and tables; `assets/report` has its style and the script that draws the plots with
 //! uPlot. All text goes through maud, which escapes it, or through the JSON index.
 
+mod cascade;
 mod data;
 mod families;
 mod injected;
@@ -20,7 +21,7 @@ pub(crate) mod text;
 use std::time::Duration;
 
 use forwardstep_check::derivation::explain;
-use forwardstep_sim::Setup;
+use forwardstep_sim::{AxisUnit, Setup};
 use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -41,7 +42,7 @@ const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
 /// Draws bodies; only on pages that have some.
 const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 14] = [
+const PAGE_JS: [&str; 15] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
@@ -49,6 +50,7 @@ const PAGE_JS: [&str; 14] = [
     include_str!("../../../assets/report/scene.js"),
     include_str!("../../../assets/report/painter.js"),
     include_str!("../../../assets/report/solids.js"),
+    include_str!("../../../assets/report/flights.js"),
     include_str!("../../../assets/report/graph.js"),
     include_str!("../../../assets/report/svg.js"),
     include_str!("../../../assets/report/export.js"),
@@ -105,7 +107,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (sections::verdicts(record, metrics, goes_on))
                     (practical::practical(record, metrics))
                     (predicted::section(record, metrics))
-                    (signals(record))
+                    (signals(record, payload.cascade))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
                     (explanation_markup(record.setup, &explain(record.setup)))
@@ -138,11 +140,13 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
 }
 
 /// The plots; the script fills their cards.
-fn signals(record: &RunRecord<'_>) -> Markup {
+fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
     let agents = &record.setup.agents;
     let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
     let recorded = |signal| columns.iter().any(|column| column.signal == signal);
+    let no_lengths = agents.iter().flat_map(|agent| &agent.robot.axes).all(|axis| axis.unit == AxisUnit::Own);
+    let input = if no_lengths { "Inputs" } else { "Torques" };
     html! {
         section #signals {
             h2 { "Signals" }
@@ -157,7 +161,7 @@ fn signals(record: &RunRecord<'_>) -> Markup {
             noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
             div.grid {
                 (card("position", "Positions", "q", ""))
-                @if recorded(Signal::Torque) { (card("torque", "Torques", "τ, after any limit", "")) }
+                @if recorded(Signal::Torque) { (card("torque", input, "τ, after any limit", "")) }
                 @if recorded(Signal::External) {
                     (card("external", "External torques and forces", "τ_ext, by pushes", ""))
                 }
@@ -169,6 +173,7 @@ fn signals(record: &RunRecord<'_>) -> Markup {
                     (card(&family.id(), &family.title, &family.letters, ""))
                 }
                 @if adaptive { (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no estimate was recorded")) }
+                @if cascade { (card("cascade", "Interval of the cascade", "max − min of all ψ; guaranteed for s ≡ 0 dashed", "")) }
                 @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }

@@ -21,9 +21,10 @@ const COMMON_JS: [&str; 3] = [
     include_str!("../../../assets/report/vectors.js"),
 ];
 /// One picture, from what `index`, `data`, `agents` and `colour` are of its run.
-const PICTURE_JS: [&str; 3] = [
+const PICTURE_JS: [&str; 4] = [
     include_str!("../../../assets/report/scene.js"),
     include_str!("../../../assets/report/painter.js"),
+    include_str!("../../../assets/report/flights.js"),
     include_str!("../../../assets/report/graph.js"),
 ];
 const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents) => {\n";

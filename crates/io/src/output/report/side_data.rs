@@ -168,7 +168,7 @@ fn quantities(record: &RunRecord<'_>, table: &Table<'_>, main: &mut Series<'_>) 
     if !v.is_empty() {
         let sum: Vec<f64> = (0..table.t_s.len()).map(|row| v.iter().filter_map(|v| v.get(row)).sum()).collect();
         let lines = vec![Line { series: main.add(&sum, false), style: Style::Run }];
-        add("lyapunov", "V of all agents", true, vec![Entry { name: "V".into(), unit: "J".into(), lines }]);
+        add("lyapunov", "V of all agents", true, vec![Entry { name: "V".into(), unit: unit(setup, 0, Signal::Lyapunov, 0), lines }]);
     }
     all
 }
@@ -212,7 +212,8 @@ fn sizes(table: &Table<'_>, main: &mut Series<'_>, signal: Signal) -> Vec<Entry>
         let norm: Vec<f64> = rows.map(|row| at(row).map(|value| value * value).sum::<f64>().sqrt()).collect();
         for (name, values) in [("largest", largest), ("norm", norm)] {
             let lines = vec![Line { series: main.add(&values, signal.row().may_jump), style: Style::Run }];
-            entries.push(Entry { name: format!("{name}, {unit}"), unit: unit.clone(), lines });
+            let name = if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") };
+            entries.push(Entry { name, unit: unit.clone(), lines });
         }
     }
     entries

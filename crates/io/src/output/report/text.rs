@@ -44,6 +44,7 @@ pub(crate) fn superscript(power: i32) -> String {
 /// A unit as in [`super::super::names::unit`], set for reading: `rad/s²`, `N m`.
 pub(crate) fn unit(plain: &str) -> String {
     match plain.split_once('^') {
+        None if plain == "1" => String::new(),
         Some((base, "0.5")) => format!("√{base}"),
         Some((base, power)) => format!("{base}{}", superscript(power.parse().unwrap_or(0))),
         None => plain.to_owned(),
@@ -58,7 +59,15 @@ pub(crate) fn units(all: impl Iterator<Item = String>) -> String {
             distinct.push(unit);
         }
     }
+    if distinct.len() > 1 {
+        distinct.iter_mut().filter(|unit| unit.is_empty()).for_each(|unit| unit.push('1'));
+    }
     distinct.join(" or ")
+}
+
+/// ` in rad` behind a name, and nothing for a pure number.
+pub(crate) fn in_unit(unit: &str) -> String {
+    if matches!(unit, "" | "1") { String::new() } else { format!(" in {unit}") }
 }
 
 /// `1 agent`, `2 agents`.
@@ -106,6 +115,9 @@ mod tests {
         let all = ["rad", "m", "rad", "m"].map(String::from).into_iter();
         assert_eq!(units(all), "rad or m");
         assert_eq!(units(["rad/s^2".to_owned()].into_iter()), "rad/s²");
+        assert_eq!(units(["1", "1"].map(String::from).into_iter()), "");
+        assert_eq!(units(["1", "m"].map(String::from).into_iter()), "1 or m");
+        assert_eq!([in_unit("1"), in_unit(""), in_unit("m")], ["", "", " in m"]);
     }
 
     #[test]

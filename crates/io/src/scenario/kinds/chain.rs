@@ -139,8 +139,8 @@ pub(super) fn chain_robot(model: ChainModel, parameters: &At<Vec<At<f64>>>) -> R
     let need = model.parameters();
     length("parameters", &parameters.span, parameters.value.len(), need, "regressor")?;
     let axes = match model.axes() {
-        1 => vec![axis("x", AxisUnit::Metre)],
-        axes => (1..=axes).map(|k| axis(&format!("x{k}"), AxisUnit::Metre)).collect(),
+        1 => vec![axis("x", AxisUnit::Own)],
+        axes => (1..=axes).map(|k| axis(&format!("x{k}"), AxisUnit::Own)).collect(),
     };
     Ok(RobotSetup {
         kind: Arc::new(model),

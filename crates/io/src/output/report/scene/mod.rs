@@ -7,6 +7,7 @@ mod kinematics;
 
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_sim::leader::Leading;
+use forwardstep_sim::network::Network;
 use forwardstep_sim::push::{Effect, Grip};
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Trajectory;
@@ -16,6 +17,7 @@ use forwardstep_sim::{
 };
 use serde::Serialize;
 
+use super::super::packets;
 use super::super::table::Table;
 use super::super::timeline::Timeline;
 use super::network;
@@ -28,6 +30,8 @@ const MOST_ROWS: usize = 1200;
 const FEWEST_ROWS: usize = 40;
 /// Edges of all graphs together.
 const MOST_EDGES: usize = 40_000;
+/// Packets of all links together.
+const MOST_PACKETS: usize = 30_000;
 
 /// What the page draws in space.
 #[derive(Serialize)]
@@ -38,6 +42,8 @@ pub(super) struct Scene {
     leader: Option<LeaderScene>,
     /// Of each graph the sender, the receiver and, where it is on the page, the series of the delay.
     graphs: Vec<Vec<(usize, usize, Option<usize>)>>,
+    /// What travels on links that carry packets.
+    packets: Vec<Flights>,
     /// The third axis points down.
     down: bool,
 }
@@ -77,6 +83,31 @@ struct LeaderScene {
     vertex: usize,
     name: String,
     q: Vec<usize>,
+}
+
+/// The packets of a link, in the order in which they were sent.
+#[derive(Serialize)]
+struct Flights {
+    from: usize,
+    to: usize,
+    sent_s: Vec<f32>,
+    /// None of a packet that was lost.
+    took_s: Vec<Option<f32>>,
+}
+
+impl Flights {
+    /// Of all links, every so many packets where there are very many.
+    fn all(network: &Network, until_s: f64) -> Vec<Flights> {
+        let links = packets::links(network);
+        let count: usize = links.iter().map(|(_, _, trace)| trace.packets().len()).sum();
+        let every = count.div_ceil(MOST_PACKETS).max(1);
+        let flights = links.into_iter().map(|(from, to, trace)| {
+            let sent = trace.packets().iter().filter(|packet| packet.send_s <= until_s).step_by(every);
+            let (sent_s, took_s) = sent.map(|it| (it.send_s as f32, it.delay_s.map(|s| s as f32))).unzip();
+            Flights { from, to, sent_s, took_s }
+        });
+        flights.collect()
+    }
 }
 
 /// Rows as they were recorded, every so many.
@@ -149,7 +180,8 @@ impl Scene {
         });
         let graphs = graphs.collect();
         let down = agents.iter().any(|agent| agent.kind == Kind::Vehicle);
-        (Scene { arms, agents, leader, graphs, down }, rows)
+        let packets = Flights::all(&setup.network, table.t_s.last().copied().unwrap_or(0.0));
+        (Scene { arms, agents, leader, graphs, packets, down }, rows)
     }
 }
 

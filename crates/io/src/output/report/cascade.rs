@@ -1,0 +1,49 @@
+//! The interval of all cascaded variables ψ and of all messages on their way, as the run took it, beside what is guaranteed of it.
+
+use forwardstep_check::prediction::CascadeSpread;
+use forwardstep_sim::recording::Signal;
+use serde::Serialize;
+
+use super::super::guarantee::{Guarantee, GuaranteeFound};
+use super::super::names;
+use super::super::record::RunRecord;
+use super::text;
+
+/// The numbers of its series.
+#[derive(Serialize)]
+pub(super) struct CascadeIndex {
+    unit: String,
+    /// The largest length of the interval over all axes.
+    width: usize,
+    /// What there is at most, for certain and for s ≡ 0.
+    guaranteed: Option<usize>,
+    /// Its ends, one for every axis.
+    low: Vec<usize>,
+    high: Vec<usize>,
+}
+
+impl CascadeIndex {
+    /// Of a run; nothing where these variables are not defined or were not recorded.
+    pub(super) fn of(record: &RunRecord<'_>, spread: &CascadeSpread, add: &mut impl FnMut(&[f64]) -> usize) -> Self {
+        let t_s = &record.outcome.recording.t_s;
+        let widths = spread.widths();
+        let guaranteed = match record.prediction.as_ref().and_then(|prediction| prediction.guarantee.as_ref()) {
+            Some(Guarantee::Found(found)) => widths.first().map(|first| add(&stairs(found, *first, t_s))),
+            Some(Guarantee::NoneSince(_)) | None => None,
+        };
+        let units = (0..record.setup.agents.len()).map(|agent| names::unit(record.setup, agent, Signal::Position, 0));
+        CascadeIndex {
+            unit: text::units(units),
+            width: add(&widths),
+            guaranteed,
+            low: spread.low.iter().map(|end| add(end)).collect(),
+            high: spread.high.iter().map(|end| add(end)).collect(),
+        }
+    }
+}
+
+/// What is left of `first` at most: between two times at which that is shown, what was left at the earlier one.
+fn stairs(found: &GuaranteeFound, first: f64, t_s: &[f64]) -> Vec<f64> {
+    let left = |t_s: &f64| found.falls.iter().filter(|fall| fall.t_s <= *t_s).map(|fall| fall.left).fold(1.0, f64::min);
+    t_s.iter().map(|t_s| first * left(t_s)).collect()
+}
