@@ -9,3 +9,4 @@ trap 'rm -rf "$scratch"' EXIT
   "$program" run "$scenario" --out "$scratch/$scenario" >"$scratch/log" </dev/null
   cp "$scratch/$scenario/plots/disagreement.svg" "$pictures/$scenario.svg"
 done
+python3 "$(dirname "$0")/space.py" "$program" >"$scratch/log"

@@ -261,6 +261,19 @@ def marks(browser, name, late_s):
     expect(all(0 <= f["share"] < 1 and abs(f["t"] - f["sent"] - f["share"] * late_s) < 1e-6 for f in found), f"{name}: marks {found[:3]}")
 
 
+def shapes(browser, name):
+    """A ball on the end of an arm stands where the run recorded its tip, and nothing is left of the capsules that shapes replace."""
+    rows, worst = int(value(browser, "s.times().length")), 0.0
+    for row in range(0, rows, max(1, rows // 20)):
+        parts, recorded = value(browser, f"[s.parts(s.times()[{row}]), s.recorded({row})]")
+        expect(len(parts) == 2, f"{name}: {len(parts)} shapes")
+        own = recorded[0]
+        for axis, x in zip(own["coordinates"], own["tip"]):
+            worst = max(worst, abs(parts[1]["at"][axis] - own["base"][axis] - x))
+    expect(0.0 < worst < TOLERANCE_M, f"{name}: shapes are drawn {worst} m from where they are")
+    print(f"ok     {name}: shapes within {worst:.1e} m of the library's tip")
+
+
 def tips(browser, name):
     """What is drawn beside what the run recorded of the tip, at every row."""
     rows, worst = int(value(browser, "s.times().length")), 0.0
@@ -334,6 +347,17 @@ def main():
         for name in ["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"]:
             browser.open(run(name))
             tips(browser, name)
+        arm = pathlib.Path(__file__).resolve().parents[2] / "crates" / "io" / "robots" / "ur5e.urdf"
+        ball = '<link name="tool0"><visual><origin xyz="0 0 0.15"/><geometry><sphere radius="0.1"/></geometry></visual></link>'
+        box = '<link name="base_link"><visual><geometry><mesh filename="box.stl"/></geometry></visual>'
+        (folder / "ur5e.urdf").write_text(arm.read_text().replace('<link name="tool0"/>', ball).replace('<link name="base_link">', box).replace('<link name="base_link"/>', f"{box}</link>"))
+        (folder / "box.stl").write_text("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n")
+        (folder / "shaped.toml").write_text(subprocess.run([program, "scenarios", "task-space-ur5e"], capture_output=True, text=True, check=True).stdout)
+        subprocess.run([program, "run", folder / "shaped.toml", "--meshes", "--out", folder / "shaped"], capture_output=True, check=True)
+        for query in ["", "?flat"]:
+            browser.open(folder / "shaped" / "report.html", query)
+            shapes(browser, f"shaped{query}")
+            quiet(browser, f"shaped{query}")
         page = run("from-a-log")
         browser.open(page)
         flights(browser, "from-a-log", page)

@@ -113,6 +113,7 @@ impl Default for Command {
             balance: false,
             predict: false,
             follow: false,
+            meshes: false,
         })
     }
 }
@@ -141,6 +142,10 @@ pub(crate) struct RunOptions {
     /// Write the page while the run goes on too, from its first second on and for a few percent of its time; a browser loads it again by itself
     #[arg(long)]
     pub(crate) follow: bool,
+    /// Draw robots as their URDFs describe them: boxes, cylinders, balls, and STL, OBJ and DAE inside the URDF's own folder or package, as
+    /// fine as 1 MB holds
+    #[arg(long)]
+    pub(crate) meshes: bool,
 }
 
 #[derive(Debug, Args)]

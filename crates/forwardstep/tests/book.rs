@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 
 fn book() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book/src")
@@ -92,6 +92,15 @@ fn the_gallery_misses_no_scenario() {
         assert!(gallery.contains(&format!("]({picture})")), "{picture}");
         let drawn = fs::read_to_string(book().join(&picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
         assert!(drawn.starts_with("<svg ") && drawn.contains("<polyline "), "{picture}");
+        let space = format!("pictures/{}-in-space.svg", scenario.name);
+        assert!(gallery.contains(&format!("]({space})")), "{space}");
+        let drawn = fs::read_to_string(book().join(&space)).unwrap_or_else(|error| panic!("{space}: {error}"));
+        // Everybody's path, and everybody's name.
+        assert!(drawn.starts_with("<svg ") && drawn.contains("<path ") && !drawn.contains("NaN"), "{space}");
+        let agents = open_scenario(scenario.name).unwrap().setup.agents;
+        let named = |name: &str| drawn.contains(&format!(">{name}<")) || drawn.contains(&format!(">{name}, leads<"));
+        let missing: Vec<_> = agents.iter().map(|agent| &agent.name).filter(|name| !named(name)).collect();
+        assert!(missing.len() <= agents.len() / 3, "{space}: {missing:?}");
     }
 }
 

@@ -10,6 +10,8 @@ mod meant;
 pub mod output;
 pub mod robot;
 pub mod scenario;
+#[cfg(feature = "report")]
+pub mod shapes;
 mod shown;
 pub mod urdf;
 mod wording;

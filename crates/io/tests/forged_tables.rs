@@ -55,6 +55,7 @@ fn write(folder: &Path, change: impl FnOnce(&mut Recording)) -> Recording {
         digital: None,
         injected: Vec::new(),
         notices: Vec::new(),
+        shapes: None,
     };
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options::default()).unwrap();
     outcome.recording

@@ -87,6 +87,7 @@ fn write_of(text: &str, folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)
         digital: None,
         injected: injected(),
         notices: vec!["one".into()],
+        shapes: None,
     };
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options { csv: true }).unwrap();
     outcome
@@ -107,7 +108,10 @@ fn rebuild(folder: &Path) -> Result<(), RestoreError> {
 fn a_leader_has_columns_of_its_own() {
     let led = CARTS
         .replace("[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n", LED)
-        .replace("[[\"cart-1\", \"cart-2\"], [\"cart-2\", \"cart-1\"]]", "[[\"guide\", \"cart-1\"], [\"cart-1\", \"cart-2\"]]")
+        .replace(
+            "[[\"cart-1\", \"cart-2\"], [\"cart-2\", \"cart-1\"]]",
+            "[[\"guide\", \"cart-1\"], [\"cart-1\", \"cart-2\"]]",
+        )
         .replace("delay.constant_s = 0.1\n", "");
     let folder = tempfile::tempdir().unwrap();
     let outcome = write_of(&led, folder.path(), |_, _| {});

@@ -49,6 +49,7 @@ fn run(scenario: &Path, out: &Path) {
         digital: None,
         injected: Vec::new(),
         notices: Vec::new(),
+        shapes: None,
     };
     write_run(&RunFolder::create(out, false).unwrap(), &record, Options::default()).unwrap();
 }

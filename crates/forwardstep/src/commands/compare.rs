@@ -174,6 +174,7 @@ fn run_first(
         balance: false,
         predict: options.predict,
         follow: false,
+        meshes: false,
     };
     let promise = promise(&scenario.setup);
     execute(scenario, &promise, path, &options, kinds, stop, &mut Console::muted())

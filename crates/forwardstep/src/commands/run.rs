@@ -11,6 +11,7 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::io::shapes::Shapes;
 use forwardstep::io::shown;
 use forwardstep::sim::{
     Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
@@ -24,6 +25,9 @@ use super::summary::summary;
 use crate::arguments::RunOptions;
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
+
+/// Shapes that are left out are named as many.
+const MOST_LEFT_OUT: usize = 5;
 
 /// Simulates a scenario, writes its folder and prints a summary.
 pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Status {
@@ -65,6 +69,18 @@ pub(super) fn execute(
     }
     console.line("");
 
+    let shapes = options.meshes.then(|| {
+        let (shapes, left_out) = Shapes::read(&scenario.models);
+        left_out
+            .iter()
+            .take(MOST_LEFT_OUT)
+            .for_each(|why| remark(format_args!("Drawn without: {}", shown(why.as_str()))));
+        if let Some(more @ 1..) = left_out.len().checked_sub(MOST_LEFT_OUT) {
+            remark(format_args!("and without {more} more"));
+        }
+        shapes
+    });
+
     let mut bar = Bar::new();
     let started = Instant::now();
     let mut balances = if options.balance { InjectionWatch::of(setup) } else { None };
@@ -89,6 +105,7 @@ pub(super) fn execute(
     let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
     let mut record = record(scenario, promise, &outcome, goal);
     record.prediction = prediction;
+    record.shapes = shapes.as_ref();
     record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
     let lost = journal.failure().is_some();
     if let Some(error) = journal.failure() {
@@ -153,6 +170,7 @@ fn record<'a>(
         digital: None,
         injected: Vec::new(),
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
+        shapes: None,
     }
 }
 

@@ -128,16 +128,24 @@ const ring = (centre, axis, radius) => {
 
 // The links of an arm, thinner from joint to joint.
 const armSolids = (arm, frames, base, put) => {
+  // Where the shape of a body is known its capsules are drawn only in the projection.
+  const shaped = new Set(arm.parts.map((part) => part.body));
   const thick = 0.036 * arm.reach;
   const depth = [];
   arm.joints.forEach((joint, k) => {
     depth[k] = joint.parent === null ? 0 : depth[joint.parent] + 1;
     const r = thick * Math.max(0.42, 1 - 0.11 * depth[k]);
-    put(add(base, frames[k].before), add(base, frames[k].place), r);
-    if (!joint.turns) put(add(base, frames[k].place), add(base, frames[k].at), 0.5 * r);
+    put(add(base, frames[k].before), add(base, frames[k].place), r, shaped.has(joint.parent));
+    if (!joint.turns) put(add(base, frames[k].place), add(base, frames[k].at), 0.5 * r, shaped.has(k));
   });
-  for (const [k, end] of arm.ends) put(add(base, frames[k].at), add(base, pointOf(frames[k], end)), thick * Math.max(0.36, 0.9 - 0.11 * depth[k]));
+  for (const [k, end] of arm.ends) put(add(base, frames[k].at), add(base, pointOf(frames[k], end)), thick * Math.max(0.36, 0.9 - 0.11 * depth[k]), shaped.has(k));
 };
+// The shapes of its links, where its joints take them.
+const armParts = (arm, frames, base) =>
+  arm.parts.map(({ body, place: [turn, at], solid }) => {
+    const own = composed(body === null ? IDENTITY : frames[body], { turn, at });
+    return { solid, turn: own.turn, at: add(base, own.at) };
+  });
 
 // Everything to draw of one body at a time.
 const drawBody = (body, place, into) => {
@@ -145,12 +153,14 @@ const drawBody = (body, place, into) => {
   const q = read(body.q, place);
   if (!finite(q)) return;
   const at = placeOf(body, q);
-  const solid = (a, b, r) => into.solids.push({ a, b, r, colour, faint: body.motion });
+  const solid = (a, b, r, shaped = false) => into.solids.push({ a, b, r, colour, faint: body.motion, shaped });
   const line = (points, more) => into.lines.push({ points, colour, width: 1.4, ...more });
   let label = at;
   if (body.kind === "arm") {
     const arm = scene.arms[body.arm];
-    armSolids(arm, armFrames(arm, q), at, solid);
+    const frames = armFrames(arm, q);
+    armSolids(arm, frames, at, solid);
+    for (const part of armParts(arm, frames, at)) into.parts.push({ ...part, colour, faint: body.motion });
     if (body.target.length && body.coordinates.length === 0) {
       const ghost = (a, b) => line([a, b], { alpha: 0.55, dash: [4, 3] });
       armSolids(arm, armFrames(arm, read(body.target, place)), at, ghost);
@@ -220,7 +230,7 @@ const drawSpacecraft = (body, q, place, at, solid, line, into) => {
 // Everything at a time; `hidden` says of which agents nothing is drawn.
 const frameAt = (time, hidden = () => false) => {
   const place = data.place("scene", time);
-  const into = { solids: [], lines: [], faces: [], dots: [], arrows: [], crosses: [], nodes: [], words: [], place };
+  const into = { solids: [], parts: [], lines: [], faces: [], dots: [], arrows: [], crosses: [], nodes: [], words: [], place };
   if (sceneTimes.length === 0) return into;
   for (const body of bodies) if (!hidden(body)) drawBody(body, place, into);
   return into;

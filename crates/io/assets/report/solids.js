@@ -34,6 +34,19 @@ const lighting = (() => {
     meshes = { tubes, balls, size };
     return meshes;
   };
+  // A shape as often as robots have it, with flat faces that are seen from both sides, which is 2.
+  const plain = new THREE.MeshLambertMaterial({ color: 0xffffff, side: 2, flatShading: true });
+  const words = (text) => new Uint16Array(Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer);
+  const shapes = scene.solids.map(({ low, step, points, faces }, k) => {
+    const shape = new THREE.BufferGeometry();
+    shape.setAttribute("position", new THREE.BufferAttribute(Float32Array.from(words(points), (n, i) => low[i % 3] + step[i % 3] * n), 3));
+    shape.setIndex(new THREE.BufferAttribute(words(faces), 1));
+    const most = bodies.filter((body) => body.kind === "arm").reduce((count, body) => count + scene.arms[body.arm].parts.filter((part) => part.solid === k).length, 0);
+    const mesh = new THREE.InstancedMesh(shape, plain, Math.max(1, most));
+    mesh.frustumCulled = false;
+    world3.add(mesh);
+    return { mesh, most };
+  });
   const matrix = new THREE.Matrix4();
   const paints = new Map();
   const paint = (text, faint) => {
@@ -54,8 +67,9 @@ const lighting = (() => {
     eye.updateProjectionMatrix();
     sun.position.set(...add(add(see.back, scaled(see.upward, 0.8)), scaled(see.right, -0.6)));
     pencil.color.set(colours.grid);
-    const { tubes, balls } = room(frame.solids.length);
-    frame.solids.forEach(({ a, b, r, faint, ...item }, k) => {
+    const capsules = frame.solids.filter((solid) => !solid.shaped);
+    const { tubes, balls } = room(capsules.length);
+    capsules.forEach(({ a, b, r, faint, ...item }, k) => {
       const along = minusVector(b, a);
       const length = size(along);
       const y = length > 0 ? scaled(along, 1 / length) : [0, 0, 1];
@@ -72,9 +86,18 @@ const lighting = (() => {
         balls.setColorAt(2 * k + end, tint);
       });
     });
-    tubes.count = frame.solids.length;
-    balls.count = 2 * frame.solids.length;
-    for (const mesh of [tubes, balls]) {
+    tubes.count = capsules.length;
+    balls.count = 2 * capsules.length;
+    shapes.forEach((shape, k) => {
+      const own = frame.parts.filter((part) => part.solid === k).slice(0, shape.most);
+      own.forEach(({ turn: [x, y, z], at, faint, ...item }, n) => {
+        matrix.set(...x, at[0], ...y, at[1], ...z, at[2], 0, 0, 0, 1);
+        shape.mesh.setMatrixAt(n, matrix);
+        shape.mesh.setColorAt(n, paint(inkOf(colours, item), faint));
+      });
+      shape.mesh.count = own.length;
+    });
+    for (const mesh of [tubes, balls, ...shapes.map((shape) => shape.mesh)]) {
       mesh.instanceMatrix.needsUpdate = true;
       if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
     }

@@ -232,6 +232,7 @@ Object.assign(document.getElementById("stage"), {
   go: stage.go,
   time: () => stage.now.t,
   flat: () => stage.now.flat,
+  parts: (t) => frameAt(t).parts,
   names: () => bodies.map((body) => body.name),
   flights: (t) => heardAt(t).edges,
   gap: () => (index.disagreement ? data.values("main", index.disagreement.overall).map((size, row) => [data.t("main")[row], size]) : []),

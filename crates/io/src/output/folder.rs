@@ -17,7 +17,7 @@ use crate::scenario::run_folder::MANIFEST;
 pub(super) const SEAL: &str = "summary.json";
 
 /// Every file that a run may write, but for the copies of its inputs.
-pub(crate) const FILES: [&str; 13] = [
+pub(crate) const FILES: [&str; 14] = [
     "scenario.toml",
     MANIFEST,
     "trajectory.parquet",
@@ -25,6 +25,7 @@ pub(crate) const FILES: [&str; 13] = [
     "packets.csv",
     "phases.csv",
     "holds.csv",
+    "shapes.json",
     "report.html",
     "plots/positions.svg",
     "plots/torques.svg",

@@ -12,6 +12,7 @@
 //! | `holds.csv` | when each value of every random hold began, where there are some; `delay.hold_log` replays it |
 //! | `rows.journal` | the rows of a run that is still going on, or was cut off: [`journal`] |
 //! | `summary.json` | [`summary::Summary`]: verdicts, metrics, how it ended |
+//! | `shapes.json` | what the robots look like, when asked for |
 //! | `report.html` | one self-contained page that opens offline |
 //! | `plots/*.svg` | positions, torques, estimates and disagreement, one panel per joint |
 //! | `scenario.toml` | the text the run was made from |
@@ -110,6 +111,7 @@ pub use stored_table::ParquetProblem;
 use crate::scenario::run_folder::{Copied, MANIFEST, Manifest};
 
 const PARQUET: &str = "trajectory.parquet";
+const SHAPES: &str = "shapes.json";
 const CSV: &str = "trajectory.csv";
 
 /// What to write besides the files that are always written.
@@ -171,6 +173,10 @@ fn write_all(
     }
     if !draws::holds(&record.setup.network).is_empty() {
         table("holds.csv", staging.write("holds.csv", |out| Ok(draws::write_holds(out, record.setup)?))?);
+    }
+    if let Some(shapes) = record.shapes {
+        let text = serde_json::to_string(shapes);
+        staging.write(SHAPES, |out| Ok(std::io::Write::write_all(out, text?.as_bytes())?))?;
     }
     write_pictures(&mut staging, record, &metrics)?;
     staging.write("summary.json", |out| Ok(summary::Summary::of(record, metrics, tables).write(out)?))?;

@@ -9,6 +9,7 @@ use super::injected::Injected;
 use super::metrics::Metrics;
 use super::prediction::Predictions;
 use crate::scenario::{Goal, InputFile};
+use crate::shapes::Shapes;
 
 /// A finished run with all that was said about it before: what [`super::write_run`] writes.
 #[derive(Clone, Debug)]
@@ -41,6 +42,8 @@ pub struct RunRecord<'a> {
     pub injected: Vec<Injected>,
     /// Remarks for the reader of the report.
     pub notices: Vec<String>,
+    /// What the robots look like, if that was read.
+    pub shapes: Option<&'a Shapes>,
 }
 
 impl RunRecord<'_> {

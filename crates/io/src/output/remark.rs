@@ -39,6 +39,8 @@ pub enum Remark {
         /// How many they are.
         count: usize,
     },
+    /// What the robots look like cannot be read.
+    ShapesDamaged,
     /// The verdicts are others than those given before the run.
     VerdictsDiffer,
     /// The run was written in an earlier format.
@@ -80,6 +82,9 @@ impl fmt::Display for Remark {
             Remark::ColumnsMissing { first, count: 1 } => write!(f, "the tables have no column `{first}`"),
             Remark::ColumnsMissing { first, count } => {
                 write!(f, "the tables have no column `{first}` and lack {} more", count - 1)
+            }
+            Remark::ShapesDamaged => {
+                f.write_str("shapes.json, which says what the robots look like, cannot be read; they are drawn as capsules")
             }
             Remark::VerdictsDiffer => {
                 f.write_str("the verdicts were worked out anew and are not those given before the run, which summary.json has")

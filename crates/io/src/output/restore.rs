@@ -24,11 +24,12 @@ use super::restore_error::{RestoreError, SummaryError, TableError};
 use super::restore_journal;
 use super::summary::{FORMAT, Summary, Verdicts};
 use super::table::NamedColumns;
-use super::{CSV, PARQUET, csv, inputs, names, stored_table};
+use super::{CSV, PARQUET, SHAPES, csv, inputs, names, stored_table};
 use crate::SourceText;
 use crate::files::{MOST_BYTES, ReadError, open_file, read_text};
 use crate::scenario::kinds::Kinds;
 use crate::scenario::{Inputs, Scenario, upgrade};
+use crate::shapes::Shapes;
 
 /// Signals of format 1 and what their columns are called now.
 const SIGNALS: [(&str, &str); 2] = [("sign", "selection"), ("omega_wanted", "omega_commanded")];
@@ -57,6 +58,7 @@ pub(super) struct Saved {
     pub(super) remarks: Vec<Remark>,
     /// So many bytes of the journal were left out, if that is where it is from.
     pub(super) left_out: Option<u64>,
+    pub(super) shapes: Option<Shapes>,
 }
 
 impl SavedRun {
@@ -140,6 +142,7 @@ impl SavedRun {
             digital: summary.digital.clone(),
             injected: summary.injected.clone(),
             notices: summary.notices.iter().cloned().chain(remarks.iter().map(Remark::to_string)).collect(),
+            shapes: self.saved.shapes.as_ref(),
         }
     }
 
@@ -236,8 +239,23 @@ impl Saved {
             RestoreError::Summary { path: path.join(SUMMARY), reason: SummaryError::Breakdown { column } }
         })?;
         let outcome = Outcome { recording, ending, statistics: summary.statistics() };
-        Ok((Saved { scenario, text, summary, outcome, remarks, left_out: None }, folder))
+        let shapes = shapes(path, &mut remarks);
+        Ok((Saved { scenario, text, summary, outcome, remarks, left_out: None, shapes }, folder))
     }
+}
+
+/// What the robots look like, if the run kept that. Without it they are drawn as capsules.
+pub(super) fn shapes(folder: &Path, remarks: &mut Vec<Remark>) -> Option<Shapes> {
+    let path = folder.join(SHAPES);
+    if !path.exists() {
+        return None;
+    }
+    let shapes: Option<Shapes> = read_text(&path).ok().and_then(|text| serde_json::from_str(&text).ok());
+    let sound = shapes.filter(Shapes::is_sound);
+    if sound.is_none() {
+        remarks.push(Remark::ShapesDamaged);
+    }
+    sound
 }
 
 fn is_run(path: &Path) -> bool {

@@ -73,5 +73,5 @@ fn restored(folder: &Path, read: ReadJournal, kinds: &Kinds) -> Result<Saved, Re
     };
     let statistics = summary.statistics();
     let outcome = Outcome { recording, ending, statistics };
-    Ok(Saved { scenario, text: head.scenario, summary, outcome, remarks, left_out: Some(left_out) })
+    Ok(Saved { scenario, text: head.scenario, summary, outcome, remarks, left_out: Some(left_out), shapes: None })
 }

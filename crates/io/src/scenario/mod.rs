@@ -119,6 +119,7 @@ use file::{AdaptiveMethodFile, AgentFile, MethodFile, ScenarioFile, SolverFile};
 use impossible::Reading;
 use inputs::InputFolder;
 use kinds::{Kinds, ReferenceReader};
+pub use robots::Model;
 use robots::Stop;
 
 /// The format of scenario files.
@@ -141,6 +142,8 @@ pub struct Scenario {
     pub notices: Vec<Notice>,
     /// The files that it names, as they were read, each once; shipped robots are not among them.
     pub inputs: Vec<InputFile>,
+    /// What each agent looks like, if it is from a URDF.
+    pub models: Vec<Option<Model>>,
 }
 
 /// A mistake in a scenario, or in a file that it names.
@@ -315,6 +318,7 @@ fn meaning(
         goal,
         notices,
         inputs: Vec::new(),
+        models: read.bodies.iter().map(Model::of).collect(),
     })
 }
 

@@ -168,7 +168,9 @@ impl Reader<'_, '_> {
         (any, takes): (&'static str, &'static str),
     ) -> Result<(), Fault> {
         let axes = axes.iter().filter_map(|axis| self.agent.robot.axes.get(*axis));
-        let Some(axis) = axes.into_iter().find(|axis| axis.unit != unit && axis.unit != AxisUnit::Own) else { return Ok(()) };
+        let Some(axis) = axes.into_iter().find(|axis| axis.unit != unit && axis.unit != AxisUnit::Own) else {
+            return Ok(());
+        };
         let unit = match axis.unit {
             AxisUnit::Radian => "rad",
             AxisUnit::Metre => "m",

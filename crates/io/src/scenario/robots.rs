@@ -70,12 +70,29 @@ pub struct Body {
     pub links: Rc<[(String, Anchor)]>,
     /// The tip of a planar arm.
     pub tip: Option<PlanarTip>,
+    /// The URDF, which also says what its links look like.
+    pub urdf: Option<SourceText>,
+}
+
+/// A robot from a URDF: its text, and what holds its links.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Under the path that it was read from.
+    pub urdf: SourceText,
+    /// All links by their names.
+    pub links: Vec<(String, Anchor)>,
+}
+
+impl Model {
+    pub(super) fn of(body: &Body) -> Option<Model> {
+        Some(Model { urdf: body.urdf.clone()?, links: body.links.to_vec() })
+    }
 }
 
 impl Default for Body {
     /// Nowhere.
     fn default() -> Self {
-        Body { links: Rc::new([]), tip: None }
+        Body { links: Rc::new([]), tip: None, urdf: None }
     }
 }
 

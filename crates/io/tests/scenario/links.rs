@@ -251,6 +251,7 @@ fn run(scenario: &Scenario, folder: &Path) -> Outcome {
         digital: None,
         injected: Vec::new(),
         notices: Vec::new(),
+        shapes: None,
     };
     let folder = RunFolder::create(folder, false).unwrap();
     write_run(&folder, &record, Options::default()).unwrap();

@@ -205,6 +205,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         digital: None,
         injected: Vec::new(),
         notices: Vec::new(),
+        shapes: None,
     }
 }
 

@@ -52,6 +52,7 @@ pub(super) fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: 
         digital: None,
         injected: Vec::new(),
         notices: Vec::new(),
+        shapes: None,
     }
 }
 

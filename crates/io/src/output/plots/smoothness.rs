@@ -41,7 +41,7 @@ pub fn plot_orders(orders: &[OfOrder], traces: &[Trace], at_s: f64, unit: &str) 
             Panel {
                 title: "The torque around a jump of what is heard".into(),
                 x: Across::Stretch,
-                y: format!("change of τ{}", text::in_unit(&unit)),
+                y: format!("change of τ{}", text::in_unit(unit)),
                 log: false,
                 lines: traces.iter().map(trace).collect(),
                 guide: None,
@@ -90,7 +90,7 @@ pub fn plot_filters(filters: &Filters, unit: &str) -> Result<String, EncodeError
         panels: vec![Panel {
             title: String::new(),
             x: Across::Log("ε in s"),
-            y: format!("largest jump of τ{}", text::in_unit(&unit)),
+            y: format!("largest jump of τ{}", text::in_unit(unit)),
             log: true,
             lines: vec![Line { colour: SOFT, width: 1, points: inverse }, Line { colour: measured, width: 2, points }],
             guide: None,

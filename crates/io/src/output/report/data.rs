@@ -245,7 +245,7 @@ impl Payload {
         });
         let spread = CascadeSpread::of(record.setup, &record.outcome.recording).ok();
         let cascade = spread.map(|spread| CascadeIndex::of(record, &spread, &mut |values| main.add(values, false)));
-        let (scene, space) = Scene::of(record.setup, table, timeline);
+        let (scene, space) = Scene::of(record.setup, table, timeline, record.shapes);
         let solid = scene.is_solid();
 
         let (agents, estimates) = agents(record, table, references, &mut notes);

@@ -21,8 +21,8 @@ pub(crate) mod text;
 use std::time::Duration;
 
 use forwardstep_check::derivation::explain;
-use forwardstep_sim::{AxisUnit, Setup};
 use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::{AxisUnit, Setup};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::families::Family;

@@ -91,7 +91,7 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
     let timeline = Timeline::of_setup(setup, until_s);
     let mut main = Series::new(Grid::new(table.t_s, &timeline.break_points(), POINTS), table.t_s);
     let quantities = quantities(record, &table, &mut main);
-    let (scene, space) = Scene::of(setup, &table, &timeline);
+    let (scene, space) = Scene::of(setup, &table, &timeline, None);
     let (delay_t_s, delay_values) = timeline::sample_delays(&setup.network.delays, &timeline.delay_jumps, until_s);
     let shown = network::shown_delays(setup, &timeline);
     let axis = |agent, axis| AxisIndex { units: Units { q: unit(setup, agent, Signal::Position, axis) } };
@@ -168,7 +168,12 @@ fn quantities(record: &RunRecord<'_>, table: &Table<'_>, main: &mut Series<'_>) 
     if !v.is_empty() {
         let sum: Vec<f64> = (0..table.t_s.len()).map(|row| v.iter().filter_map(|v| v.get(row)).sum()).collect();
         let lines = vec![Line { series: main.add(&sum, false), style: Style::Run }];
-        add("lyapunov", "V of all agents", true, vec![Entry { name: "V".into(), unit: unit(setup, 0, Signal::Lyapunov, 0), lines }]);
+        add(
+            "lyapunov",
+            "V of all agents",
+            true,
+            vec![Entry { name: "V".into(), unit: unit(setup, 0, Signal::Lyapunov, 0), lines }],
+        );
     }
     all
 }

@@ -125,5 +125,5 @@ fn arm(links: &PlanarLinks) -> Result<(RobotSetup, Body), Fault> {
         return Err(Fault::new(LimpArm));
     }
     let robot = RobotSetup::planar_arm(links);
-    Ok((robot, Body { links: Rc::new([]), tip: Some(PlanarTip { length_m: links.length_m }) }))
+    Ok((robot, Body { links: Rc::new([]), tip: Some(PlanarTip { length_m: links.length_m }), urdf: None }))
 }

@@ -94,7 +94,7 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
             let drives = JointDrives { damping, armature: each(file.armature.as_ref(), &vec![0.0; axes]), friction };
             let robot = read.robot.with_drives(&drives).map_err(Fault::from)?;
             let links = read.links.into_iter().zip(read.anchors).collect();
-            Ok(RobotRead { robot, notices: read.notices, body: Body { links, tip: None } })
+            Ok(RobotRead { robot, notices: read.notices, body: Body { links, tip: None, urdf: Some(source) } })
         }
         Err(error) => match lock_of(&error.problem, &file.locked) {
             // What is wrong stands in the scenario, not in the URDF.

@@ -15,6 +15,8 @@ use forwardstep_core::LengthError;
 use forwardstep_core::robot::tree::{Anchor, JointKind, LinkPoint, Placement, Tree};
 use serde::Serialize;
 
+use crate::shapes::Part;
+
 /// Numbers of ϑ for every body: its mass, its mass times the centre of mass, its inertia.
 const OF_BODY: usize = 10;
 /// Shorter than this share of the whole arm, a link past its last joint would not be seen.
@@ -45,6 +47,8 @@ pub(super) struct ArmScene {
     reach: f64,
     /// Whether it moves in one upright plane.
     planar: bool,
+    /// What its links look like, as far as that is known.
+    parts: Vec<Part>,
 }
 
 impl ArmScene {
@@ -74,7 +78,7 @@ impl ArmScene {
         let ends: Vec<(usize, [f64; 3])> = ends.collect();
         let outer: f64 = ends.iter().map(|end| size(end.1)).sum();
         let reach = inner + outer;
-        Ok(ArmScene { joints, tip: tip.or(ends.last().copied()), ends, reach, planar: false })
+        Ok(ArmScene { joints, tip: tip.or(ends.last().copied()), ends, reach, planar: false, parts: Vec::new() })
     }
 
     /// Of the planar arm, whose plane stands upright.
@@ -95,7 +99,15 @@ impl ArmScene {
             tip: Some(end),
             reach: inner + outer,
             planar: true,
+            parts: Vec::new(),
         }
+    }
+
+    /// With these shapes on its links.
+    pub(super) fn with(self, parts: &[Part]) -> ArmScene {
+        let joints = self.joints.len();
+        let is_held = |part: &&Part| part.body.is_none_or(|body| body < joints);
+        ArmScene { parts: parts.iter().filter(is_held).copied().collect(), ..self }
     }
 }
 

@@ -21,6 +21,7 @@ use super::super::packets;
 use super::super::table::Table;
 use super::super::timeline::Timeline;
 use super::network;
+use crate::shapes::{Shapes, Solid};
 use kinematics::{ArmScene, uniform_lengths};
 
 /// Numbers of all rows together, four bytes each before encoding.
@@ -38,6 +39,8 @@ const MOST_PACKETS: usize = 30_000;
 pub(super) struct Scene {
     /// Each arm once.
     arms: Vec<ArmScene>,
+    /// What links look like, each shape once.
+    solids: Vec<Solid>,
     agents: Vec<AgentScene>,
     leader: Option<LeaderScene>,
     /// Of each graph the sender, the receiver and, where it is on the page, the series of the delay.
@@ -156,11 +159,17 @@ impl Scene {
         self.agents.iter().any(|agent| matches!(agent.kind, Kind::Arm | Kind::Vehicle | Kind::Spacecraft))
     }
 
-    pub(super) fn of(setup: &Setup, table: &Table<'_>, timeline: &Timeline<'_>) -> (Scene, Rows) {
+    pub(super) fn of(
+        setup: &Setup,
+        table: &Table<'_>,
+        timeline: &Timeline<'_>,
+        shapes: Option<&Shapes>,
+    ) -> (Scene, Rows) {
         let columns: usize = setup.agents.iter().map(|agent| 2 * agent.robot.axes.len() + 1).sum();
         let mut rows = Rows::new(table.t_s, columns);
         let mut arms = Vec::new();
-        let agents = (0..setup.agents.len()).map(|agent| AgentScene::of(setup, table, agent, &mut arms, &mut rows));
+        let agents =
+            (0..setup.agents.len()).map(|agent| AgentScene::of(setup, table, agent, shapes, &mut arms, &mut rows));
         let agents: Vec<AgentScene> = agents.collect();
         let leader = setup.following().zip(setup.leader()).map(|(following, vertex)| LeaderScene {
             vertex,
@@ -181,16 +190,25 @@ impl Scene {
         let graphs = graphs.collect();
         let down = agents.iter().any(|agent| agent.kind == Kind::Vehicle);
         let packets = Flights::all(&setup.network, table.t_s.last().copied().unwrap_or(0.0));
-        (Scene { arms, agents, leader, graphs, packets, down }, rows)
+        let solids = shapes.map(|shapes| shapes.solids.clone()).unwrap_or_default();
+        (Scene { arms, solids, agents, leader, graphs, packets, down }, rows)
     }
 }
 
 impl AgentScene {
-    fn of(setup: &Setup, table: &Table<'_>, agent: usize, arms: &mut Vec<ArmScene>, rows: &mut Rows) -> AgentScene {
+    fn of(
+        setup: &Setup,
+        table: &Table<'_>,
+        agent: usize,
+        shapes: Option<&Shapes>,
+        arms: &mut Vec<ArmScene>,
+        rows: &mut Rows,
+    ) -> AgentScene {
         let own = &setup.agents[agent];
         let (axes, kind) = (own.robot.axes.len(), &own.robot.kind);
         let law: Option<&TaskSpaceLaw> = own.law.downcast();
-        let arm = arm(own).map(|arm| match arms.iter().position(|known| *known == arm) {
+        let parts = shapes.map(|shapes| shapes.of(agent)).unwrap_or_default();
+        let arm = arm(own).map(|arm| arm.with(parts)).map(|arm| match arms.iter().position(|known| *known == arm) {
             Some(known) => known,
             None => {
                 arms.push(arm);

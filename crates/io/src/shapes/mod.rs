@@ -1,0 +1,217 @@
+//! What robots look like: the shapes of their links, for the picture in space. They are read beside the model and change nothing in it.
+//!
+//! A shape that is not found, not read or not drawn is left out with a word why; its link is drawn as a capsule then.
+
+mod coarse;
+mod collada;
+mod place;
+mod triangles;
+mod visual;
+
+use forwardstep_core::robot::tree::Placement;
+use serde::{Deserialize, Serialize};
+
+use crate::scenario::Model;
+use place::Folders;
+use triangles::{MOST_TRIANGLES, Triangles};
+use visual::{Form, Visual};
+
+/// The shapes of all robots.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Shapes {
+    /// Each once.
+    pub solids: Vec<Solid>,
+    /// The parts of robots that look different.
+    pub robots: Vec<Vec<Part>>,
+    /// Which of them each agent is.
+    pub agents: Vec<Option<usize>>,
+}
+
+/// Triangles, in numbers of two bytes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solid {
+    /// The least coordinates, m.
+    pub low: [f64; 3],
+    /// What a step of a number is, m.
+    pub step: [f64; 3],
+    /// Three numbers for each point, little-endian in base64.
+    pub points: String,
+    /// Three numbers of points for each triangle.
+    pub faces: String,
+}
+
+/// A solid on a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// The moving body that carries it, from zero; the base otherwise.
+    pub body: Option<usize>,
+    /// Its frame in that of the body: rotation row by row, then translation in m.
+    pub place: ([[f64; 3]; 3], [f64; 3]),
+    /// Its number among the solids.
+    pub solid: usize,
+}
+
+impl Shapes {
+    /// The parts of an agent.
+    pub fn of(&self, agent: usize) -> &[Part] {
+        let robot = self.agents.get(agent).copied().flatten().and_then(|robot| self.robots.get(robot));
+        robot.map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether every number that it holds leads somewhere.
+    pub fn is_sound(&self) -> bool {
+        self.agents.iter().flatten().all(|robot| *robot < self.robots.len())
+            && self.robots.iter().flatten().all(|part| part.solid < self.solids.len())
+    }
+
+    /// The shapes of all agents, agent by agent, and what was left out.
+    pub fn read(models: &[Option<Model>]) -> (Shapes, Vec<String>) {
+        let mut reading = Reading::default();
+        let mut known: Vec<&Model> = Vec::new();
+        let mut shapes = Shapes::default();
+        for model in models {
+            let robot = model.as_ref().map(|model| {
+                known.iter().position(|other| same(other, model)).unwrap_or_else(|| {
+                    known.push(model);
+                    shapes.robots.push(reading.robot(model));
+                    known.len() - 1
+                })
+            });
+            shapes.agents.push(robot);
+        }
+        shapes.solids = coarse::coarse(&reading.solids);
+        (shapes, reading.left_out)
+    }
+}
+
+/// Members of a population share their text.
+fn same(a: &Model, b: &Model) -> bool {
+    let texts = [a.urdf.text(), b.urdf.text()];
+    (std::ptr::eq(texts[0], texts[1]) || texts[0] == texts[1]) && a.urdf.name() == b.urdf.name() && a.links == b.links
+}
+
+/// Solids by where they are from, each once.
+#[derive(Default)]
+struct Reading {
+    solids: Vec<Triangles>,
+    triangles: usize,
+    left_out: Vec<String>,
+}
+
+impl Reading {
+    fn robot(&mut self, model: &Model) -> Vec<Part> {
+        let (visuals, left_out) = visual::visuals(model.urdf.text());
+        let file = model.urdf.name();
+        self.left_out.extend(left_out.into_iter().map(|why| format!("{file}: {why}")));
+        if visuals.is_empty() {
+            self.left_out.push(format!("{file}: it says nothing of shapes"));
+        }
+        let folders = Folders::of(file);
+        let mut parts = Vec::new();
+        for Visual { link, place, form } in visuals {
+            let Some((_, anchor)) = model.links.iter().find(|(name, _)| *name == link) else { continue };
+            match self.solid(form, folders.as_ref()) {
+                Ok(solid) => {
+                    let Placement { rotation, translation } = anchor.x_body_link.compose(&place);
+                    parts.push(Part { body: anchor.body, place: (rotation, translation), solid });
+                }
+                Err(why) => self.left_out.push(format!("{file}: {why}")),
+            }
+        }
+        parts
+    }
+
+    /// The number of a solid.
+    fn solid(&mut self, form: Form, folders: Option<&Folders>) -> Result<usize, String> {
+        let own = match form {
+            Form::Mesh { file, scale } => {
+                let read = || {
+                    let folders = folders.ok_or("a shipped robot has no folder")?;
+                    Triangles::read(&file, &folders.read(&file)?)
+                };
+                read().map_err(|why| format!("the mesh `{file}`: {why}"))?.scaled(scale)
+            }
+            Form::Box(size) => Triangles::cuboid(size),
+            Form::Cylinder { radius, length } => Triangles::cylinder(radius, length),
+            Form::Sphere { radius } => Triangles::sphere(radius),
+        };
+        if let Some(known) = self.solids.iter().position(|other| *other == own) {
+            return Ok(known);
+        }
+        if self.triangles + own.faces.len() > MOST_TRIANGLES {
+            return Err(format!("all shapes together have more than {MOST_TRIANGLES} triangles"));
+        }
+        self.triangles += own.faces.len();
+        self.solids.push(own);
+        Ok(self.solids.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::SourceText;
+    use crate::scenario::{Inputs, read_scenario};
+    use std::fs;
+
+    const ARM: &str = r#"<robot name="arm">
+  <link name="base"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
+  <link name="upper"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+    <visual><origin xyz="0 0 0.2"/><geometry><mesh filename="meshes/link.obj" scale="2 2 2"/></geometry></visual>
+    <visual><geometry><mesh filename="meshes/gone.stl"/></geometry></visual></link>
+  <link name="tool"><visual><origin xyz="0 0 0.1"/><geometry><sphere radius="0.05"/></geometry></visual></link>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
+  <joint name="fixed" type="fixed"><parent link="upper"/><child link="tool"/><origin xyz="0 0 0.5"/></joint>
+</robot>"#;
+    const TWO: &str = r#"format = 2
+time.end_s = 1
+[[agents]]
+name = "arm"
+count = 2
+robot.urdf.file = "arm.urdf"
+[reference.consensus]
+roots_per_s = [1]
+exchange = "position_velocity"
+[network]
+edges.ring = {}
+"#;
+
+    #[test]
+    fn shapes_stand_on_the_bodies_that_carry_their_links_and_each_is_kept_once() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("meshes")).unwrap();
+        fs::write(folder.path().join("arm.urdf"), ARM).unwrap();
+        fs::write(folder.path().join("meshes/link.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let source = SourceText::new("two.toml", TWO);
+        let scenario = read_scenario("two", &source, Inputs::from(Some(folder.path()))).unwrap();
+        let (shapes, left_out) = Shapes::read(&scenario.models);
+        assert_eq!(
+            (shapes.agents.as_slice(), shapes.robots.len(), shapes.solids.len()),
+            (&[Some(0), Some(0)][..], 1, 3)
+        );
+        let [base, upper, tool] = shapes.of(1) else { panic!("{shapes:?}") };
+        assert_eq!((base.body, upper.body, tool.body), (None, Some(0), Some(0)));
+        assert_eq!((upper.place.1, tool.place.1), ([0.0, 0.0, 0.2], [0.0, 0.0, 0.6]));
+        assert_eq!(shapes.solids[upper.solid].step[0], 2.0 / 65535.0);
+        assert!(
+            left_out.len() == 1 && left_out[0].ends_with("the mesh `meshes/gone.stl`: there is no such file"),
+            "{left_out:?}"
+        );
+        assert!(shapes.is_sound() && shapes.of(2).is_empty());
+        let text = serde_json::to_string(&shapes).unwrap();
+        assert_eq!(serde_json::from_str::<Shapes>(&text).unwrap(), shapes);
+        let broken = Shapes { agents: vec![Some(1)], ..shapes };
+        assert!(!broken.is_sound());
+    }
+
+    #[test]
+    fn shipped_robots_say_that_they_have_none() {
+        let source = SourceText::new("two.toml", TWO.replace("arm.urdf", "ur5e.urdf"));
+        let scenario = read_scenario("two", &source, None).unwrap();
+        let (shapes, left_out) = Shapes::read(&scenario.models);
+        assert!(shapes.of(0).is_empty());
+        assert_eq!(left_out, ["ur5e.urdf: it says nothing of shapes"]);
+    }
+}
