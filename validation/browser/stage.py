@@ -338,6 +338,9 @@ def main():
                         slides(browser, about)
                     quiet(browser, about)
                     fits(browser, about, 1400)
+            # ψ is there where agents agree by their references, and its interval holds all positions.
+            cascade = value(browser, 'document.querySelector(\'[data-plot="cascade"] canvas\') !== null')
+            expect(cascade == (name in ["six-arms", "five-ships"]), f"{name}: the interval of the cascade is {'' if cascade else 'not '}drawn")
             browser.screen(390, 844, touch=True, calm=True)
             browser.open(page)
             fits(browser, f"{name} on a phone", 390)

@@ -79,6 +79,9 @@ impl Shapes {
             });
             shapes.agents.push(robot);
         }
+        if known.is_empty() {
+            reading.left_out.push("no robot here is from a URDF".to_owned());
+        }
         shapes.solids = coarse::coarse(&reading.solids);
         (shapes, reading.left_out)
     }
@@ -135,6 +138,10 @@ impl Reading {
             Form::Cylinder { radius, length } => Triangles::cylinder(radius, length),
             Form::Sphere { radius } => Triangles::sphere(radius),
         };
+        let own = coarse::distinct(&own.sound());
+        if own.faces.is_empty() {
+            return Err("a shape without an area".to_owned());
+        }
         if let Some(known) = self.solids.iter().position(|other| *other == own) {
             return Ok(known);
         }
@@ -159,7 +166,9 @@ mod tests {
   <link name="base"><visual><geometry><box size="0.2 0.2 0.1"/></geometry></visual></link>
   <link name="upper"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
     <visual><origin xyz="0 0 0.2"/><geometry><mesh filename="meshes/link.obj" scale="2 2 2"/></geometry></visual>
-    <visual><geometry><mesh filename="meshes/gone.stl"/></geometry></visual></link>
+    <visual><geometry><mesh filename="meshes/gone.stl"/></geometry></visual>
+    <visual><geometry><mesh filename="meshes/link.obj" scale="1e300 1 1"/></geometry></visual>
+    <visual><geometry><sphere radius="0"/></geometry></visual></link>
   <link name="tool"><visual><origin xyz="0 0 0.1"/><geometry><sphere radius="0.05"/></geometry></visual></link>
   <joint name="turn" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
     <limit lower="-3" upper="3" effort="9" velocity="9"/></joint>
@@ -196,9 +205,10 @@ edges.ring = {}
         assert_eq!((upper.place.1, tool.place.1), ([0.0, 0.0, 0.2], [0.0, 0.0, 0.6]));
         assert_eq!(shapes.solids[upper.solid].step[0], 2.0 / 65535.0);
         assert!(
-            left_out.len() == 1 && left_out[0].ends_with("the mesh `meshes/gone.stl`: there is no such file"),
+            left_out.len() == 3 && left_out[0].ends_with("the mesh `meshes/gone.stl`: there is no such file"),
             "{left_out:?}"
         );
+        assert!(left_out[1..].iter().all(|why| why.ends_with("a shape without an area")), "{left_out:?}");
         assert!(shapes.is_sound() && shapes.of(2).is_empty());
         let text = serde_json::to_string(&shapes).unwrap();
         assert_eq!(serde_json::from_str::<Shapes>(&text).unwrap(), shapes);

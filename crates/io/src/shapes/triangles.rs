@@ -79,7 +79,7 @@ impl Triangles {
     }
 
     /// Without triangles whose points are not there, are not finite, or are so large that they are no robot's.
-    fn sound(mut self) -> Triangles {
+    pub(super) fn sound(mut self) -> Triangles {
         const MOST_METRES: f64 = 1e6;
         let is_sound =
             |k: &u32| self.points.get(*k as usize).is_some_and(|point| point.iter().all(|x| x.abs() <= MOST_METRES));

@@ -47,3 +47,16 @@ fn stairs(found: &GuaranteeFound, first: f64, t_s: &[f64]) -> Vec<f64> {
     let left = |t_s: &f64| found.falls.iter().filter(|fall| fall.t_s <= *t_s).map(|fall| fall.left).fold(1.0, f64::min);
     t_s.iter().map(|t_s| first * left(t_s)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::guarantee::GuaranteedFall;
+    use super::*;
+
+    #[test]
+    fn what_is_left_falls_when_it_is_shown_to() {
+        let falls = [(1.0, 0.5), (2.0, 0.1)].map(|(t_s, left)| GuaranteedFall { t_s, left }).to_vec();
+        let found = GuaranteeFound { falls, settled_s: None, repeat: None, drawn: false, any_delay: None };
+        assert_eq!(stairs(&found, 4.0, &[0.0, 0.99, 1.0, 1.5, 3.0]), [4.0, 4.0, 2.0, 2.0, 0.4]);
+    }
+}
