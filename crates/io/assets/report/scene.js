@@ -39,7 +39,7 @@ const layout = (() => {
     }
   }
   if (!(high > low)) [low, high] = [Number.isFinite(low) ? low - 1 : -1, Number.isFinite(low) ? low + 1 : 1];
-  const gap = Math.min(0.7, 5.5 / Math.max(1, rails.length));
+  const gap = Math.min(1.4, 4.6 / Math.max(1, rails.length));
   rails.forEach((b, k) => bases.set(b, [0, -gap * k, 0]));
   return { bases, rails: new Set(rails), low, high, gap, reach, cells: new Set(cells) };
 })();
@@ -99,8 +99,13 @@ const world = (() => {
   for (const body of bodies) {
     const base = layout.bases.get(body);
     if (body.kind === "arm") for (const k of [0, 2]) points.push(add(base, [0, 0, k * 0.2 * scene.arms[body.arm].reach]), ...[-0.5, 0.5].map((x) => add(base, [x * scene.arms[body.arm].reach, 0, 0])));
+    // An elbow reaches where no tip goes.
+    if (body.kind === "arm") for (let k = 0; k < TRAIL_ROWS && sceneTimes.length > 0; k += 8) {
+      const q = read(body.q, { row: trailRow(k), part: 0 });
+      if (finite(q)) points.push(...armFrames(scene.arms[body.arm], q).map((frame) => add(base, frame.at)));
+    }
     if (body.kind === "spacecraft") for (const x of [-1, 1]) points.push(add(base, [x, x, x]));
-    if (layout.rails.has(body)) points.push([0, base[1] - layout.gap / 2, 0], [RAIL, base[1] + layout.gap / 2, 0]);
+    if (layout.rails.has(body)) points.push([-0.08 * Math.min(24, body.name.length), base[1] - layout.gap / 2, 0], [RAIL, base[1] + layout.gap / 2, 0]);
   }
   const shown = points.filter((p) => p && finite(p));
   const { low, high } = boxOf(shown);
