@@ -68,6 +68,10 @@ pub struct Position;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PositionVelocity;
 
+/// Transmits x̂_j and v̂_j, where agent j believes the leader to be and how fast: no measurement, so that none can stand in for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Estimates;
+
 /// Σ_j w_ij q_j(t − T_ij).
 ///
 /// A design that hears positions only has nothing else to read:
@@ -89,6 +93,22 @@ pub struct PositionVelocitySums<'a> {
     pub q: &'a [f64],
     /// One column per axis.
     pub dq: &'a [f64],
+}
+
+/// Σ_j w_ij x̂_j(t − T_ij) and Σ_j w_ij v̂_j(t − T_ij).
+///
+/// A design that hears estimates cannot read where its neighbours are:
+///
+/// ```compile_fail,E0609
+/// let heard = forwardstep_core::reference::EstimateSums { x: &[0.0], v: &[0.0] };
+/// let positions = heard.q;
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct EstimateSums<'a> {
+    /// One column per axis.
+    pub x: &'a [f64],
+    /// One column per axis.
+    pub v: &'a [f64],
 }
 
 impl Exchange for Position {
@@ -140,5 +160,32 @@ impl Exchange for PositionVelocity {
     #[inline(always)]
     fn term(sums: PositionVelocitySums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64 {
         Scalar::mul_add(alpha_0, sums.q[k], alpha_0_over_kappa_0 * sums.dq[k])
+    }
+}
+
+impl Exchange for Estimates {
+    const CHANNELS: usize = 2;
+    type Sums<'a> = EstimateSums<'a>;
+
+    #[inline(always)]
+    fn split(buffer: &[f64], channel: usize) -> Option<EstimateSums<'_>> {
+        let (x, v) = buffer.split_at_checked(channel)?;
+        Some(EstimateSums { x, v: v.get(..channel)? })
+    }
+
+    #[inline(always)]
+    fn check(sums: EstimateSums<'_>, channel: usize) -> Result<(), LengthError> {
+        LengthError::check("sum of estimated positions heard", channel, sums.x.len())?;
+        LengthError::check("sum of estimated velocities heard", channel, sums.v.len())
+    }
+
+    #[inline(always)]
+    fn position(sums: EstimateSums<'_>, k: usize) -> f64 {
+        sums.x[k]
+    }
+
+    #[inline(always)]
+    fn term(sums: EstimateSums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64 {
+        Scalar::mul_add(alpha_0, sums.x[k], alpha_0_over_kappa_0 * sums.v[k])
     }
 }

@@ -5,6 +5,7 @@
 //! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
 //! - `backstepping`: (aa6), the baseline, which differentiates.
 //! - `following`: (110), (119), (122), which follow a leader.
+//! - `observer`: a rival of (110), which hears estimates of where the leader is.
 //! - `per_axis`: those of one's own, from one function.
 //! - `sliding`: the set-valued sign in them.
 //! - `exchange`: what agents tell each other.
@@ -14,6 +15,7 @@ mod consensus;
 mod desired;
 mod exchange;
 mod following;
+mod observer;
 mod per_axis;
 mod polynomial;
 mod pure_integral;
@@ -24,8 +26,11 @@ pub use backstepping::{Backstepping, BacksteppingError};
 pub use consensus::Consensus;
 pub(crate) use desired::Place;
 pub use desired::{Desired, DesiredDynamics, DesiredError, WrittenIn};
-pub use exchange::{Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums};
+pub use exchange::{
+    EstimateSums, Estimates, Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums,
+};
 pub use following::{Following, SmoothFollowing};
+pub use observer::Observer;
 pub use per_axis::{AxisInput, AxisOutput, PerAxis};
 pub use polynomial::{RootsError, polynomial};
 pub use pure_integral::PureIntegral;
