@@ -66,7 +66,7 @@ impl Triangles {
     pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Triangles, String> {
         let format = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase()).unwrap_or_default();
         let read = match format.as_str() {
-            "stl" => scene(mesh_loader::stl::from_slice(bytes)),
+            "stl" => scene(mesh_loader::stl::from_slice(bytes)).and_then(|read| whole(read, bytes)),
             // What an OBJ says of colours is in other files.
             "obj" => scene(mesh_loader::obj::from_slice(bytes, None, |_| {
                 Err::<&[u8], _>(std::io::Error::other("no other files"))
@@ -92,6 +92,17 @@ impl Triangles {
     pub(super) fn scaled(mut self, by: [f64; 3]) -> Triangles {
         self.points.iter_mut().for_each(|point| point.iter_mut().zip(by).for_each(|(x, by)| *x *= by));
         self
+    }
+}
+
+/// A binary STL says how many triangles it has; one that was cut off has fewer.
+fn whole(read: Triangles, bytes: &[u8]) -> Result<Triangles, String> {
+    let stated = bytes.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    match stated {
+        Some(stated) if !bytes.starts_with(b"solid") && read.faces.len() != stated as usize => {
+            Err(format!("it states {stated} triangles and has {}", read.faces.len()))
+        }
+        _ => Ok(read),
     }
 }
 
@@ -147,7 +158,8 @@ mod tests {
         assert_eq!(Triangles::read("a.stl", &binary).unwrap().faces.len(), 1);
         // What is claimed is not there.
         binary[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert!(Triangles::read("a.stl", &binary).is_err());
+        let stated = Err("it states 4294967295 triangles and has 1".into());
+        assert_eq!(Triangles::read("a.stl", &binary), stated);
         assert_eq!(Triangles::read("a.step", b"x"), Err("it is no STL, OBJ or DAE".into()));
         for (name, bytes) in [
             ("a.stl", &b""[..]),
