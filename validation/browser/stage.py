@@ -195,7 +195,7 @@ video.src = "data:video/webm;base64," + arguments[0];
 const happened = (what) => new Promise((done, fail) => (video.addEventListener(what, done, { once: true }), video.addEventListener("error", () => fail(new Error("no film")), { once: true })));
 await happened("loadeddata");
 const canvas = Object.assign(document.createElement("canvas"), { width: video.videoWidth, height: video.videoHeight });
-const ctx = canvas.getContext("2d");
+const ctx = canvas.getContext("2d", { willReadFrequently: true });
 const look = () => (ctx.drawImage(video, 0, 0), [...ctx.getImageData(0, 0, canvas.width, canvas.height).data]);
 const first = look();
 video.play();
