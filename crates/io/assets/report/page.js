@@ -90,6 +90,10 @@ const drawPicks = (card, spec, chosen) => {
   return picks;
 };
 
+// Where there is no graph, its place is for what the controllers ask for.
+const inputs = document.querySelector('[data-plot="torque"]');
+if (inputs && !scene.graphs.some((graph) => graph.length > 0)) document.querySelector(".beside-space").append(inputs);
+
 const all = [...document.querySelectorAll("[data-plot]")];
 // A card that fails says so in the banner and leaves the others alone.
 const fillAll = () =>
