@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws every scenario of the book in space again, by the page of its run in a headless chromium: `docs/book/space.py PROGRAM`.
+"""Draws every scenario of the book in space again, and the README's picture of a report, by the page of its run in a headless chromium: `docs/book/space.py PROGRAM`.
 
 Each is drawn when a tenth of its first disagreement, or distance from its target, is left: much of the way lies behind, and not all is at rest.
 """
@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "validation" / "browser"))
 import webdriver
@@ -59,6 +60,12 @@ def main():
             drawing = re.sub(r'd="([^"]*)"', lambda found: f'd="{thinned(found[1])}"', drawing)
             (PICTURES / f"{name}-in-space.svg").write_text(drawing + "\n")
             print(f"{name}: {len(drawing)} bytes")
+            if name == "six-arms":
+                # The picture of the README: the whole page, with what is on its way.
+                browser.open(page)
+                browser.run('document.getElementById("stage").go(3.25)')
+                time.sleep(1)
+                browser.picture(PICTURES.parents[2] / "report.png")
 
 
 if __name__ == "__main__":
