@@ -11,6 +11,8 @@ use super::triangles::Triangles;
 
 /// What all solids may take together, before they are encoded: 1 MB in base64.
 const ROOM_BYTES: usize = 750_000;
+/// Triangles of one picture, each as often as robots have it: what a computer without a graphics card draws in about a second.
+const MOST_DRAWN: usize = 400_000;
 /// Points of a solid, whose numbers have two bytes.
 const MOST_POINTS: usize = 1 << 16;
 /// Cells along the largest robot are so many at most, and each step halves the number of those along two edges.
@@ -22,8 +24,12 @@ pub(super) fn distinct(own: &Triangles) -> Triangles {
     clustered(own, 0.0)
 }
 
-/// All solids, each as fine as the others.
-pub(super) fn coarse(all: &[Triangles]) -> Vec<Solid> {
+/// All solids, each as fine as the others; robots have them so many times. Nothing is left of one that is smaller than a cell.
+pub(super) fn coarse(all: &[Triangles], times: &[usize]) -> Vec<Solid> {
+    let fit = |all: &[Triangles]| {
+        let drawn: usize = all.iter().zip(times).map(|(own, times)| own.faces.len() * times).sum();
+        drawn <= MOST_DRAWN && fit(all)
+    };
     if fit(all) {
         return all.iter().map(encoded).collect();
     }
@@ -154,7 +160,7 @@ mod tests {
             points: cuboid.faces.iter().flatten().map(|k| cuboid.points[*k as usize]).collect(),
             faces: (0..12).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
         };
-        let found = decoded(&coarse(&[distinct(&split)])[0]);
+        let found = decoded(&coarse(&[distinct(&split)], &[1])[0]);
         assert_eq!((found.points.len(), found.faces.len()), (8, 12));
         for point in &found.points {
             assert!(point.iter().zip([0.5, 1.0, 1.5]).all(|(x, half)| (x.abs() - half).abs() < 1e-4), "{point:?}");
@@ -165,19 +171,22 @@ mod tests {
     fn very_many_triangles_become_as_many_as_there_is_room_for() {
         let balls = [ball(700, 1.0), ball(300, 0.1)];
         assert!(balls[0].faces.len() > 900_000);
-        let solids = coarse(&balls);
+        let solids = coarse(&balls, &[1, 1]);
         let bytes: usize = solids.iter().map(|solid| solid.points.len() + solid.faces.len()).sum();
         assert!((300_000..1_000_100).contains(&bytes), "{bytes}");
         let found = decoded(&solids[0]);
         let worst =
             found.points.iter().map(|p| (p.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs()).fold(0.0, f64::max);
         assert!(worst < 0.02 && found.faces.len() > 5000, "{worst} {}", found.faces.len());
-        assert_eq!(solids, coarse(&balls), "the same each time");
+        assert_eq!(solids, coarse(&balls, &[1, 1]), "the same each time");
+        // A hundred of the large one are drawn with a hundredth of the triangles each.
+        let often = decoded(&coarse(&balls, &[100, 1])[0]);
+        assert!((1000..=4000).contains(&often.faces.len()), "{}", often.faces.len());
     }
 
     #[test]
     fn nothing_is_left_of_what_has_no_area() {
         let flat = Triangles { points: vec![[0.0; 3]; 3], faces: vec![[0, 1, 2], [0, 0, 1]] };
-        assert!(distinct(&flat).faces.is_empty() && decoded(&coarse(&[distinct(&flat)])[0]).faces.is_empty());
+        assert!(distinct(&flat).faces.is_empty() && decoded(&coarse(&[distinct(&flat)], &[1])[0]).faces.is_empty());
     }
 }

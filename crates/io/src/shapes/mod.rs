@@ -82,7 +82,14 @@ impl Shapes {
         if known.is_empty() {
             reading.left_out.push("no robot here is from a URDF".to_owned());
         }
-        shapes.solids = coarse::coarse(&reading.solids);
+        let mut times = vec![0; reading.solids.len()];
+        for robot in shapes.agents.iter().flatten() {
+            shapes.robots[*robot].iter().for_each(|part| times[part.solid] += 1);
+        }
+        shapes.solids = coarse::coarse(&reading.solids, &times);
+        // What became too small to be seen is a capsule.
+        let is_seen = |part: &Part| shapes.solids.get(part.solid).is_some_and(|solid| !solid.faces.is_empty());
+        shapes.robots.iter_mut().for_each(|parts| parts.retain(is_seen));
         (shapes, reading.left_out)
     }
 }
