@@ -96,3 +96,19 @@ fn a_list_of_copies_cannot_lead_out_of_its_folder() {
         assert!(matches!(opened, Err(OpenError::Manifest { .. })), "{list}");
     }
 }
+
+#[test]
+fn a_folder_that_is_held_for_a_moment_is_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let held = fs::File::open(folder.path()).unwrap();
+    held.lock().unwrap();
+    assert_eq!(RunFolder::is_in_use(folder.path()), Some(true));
+    assert!(RunFolder::create(folder.path(), false).is_err(), "it is held for long");
+    let later = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        drop(held);
+    });
+    RunFolder::create(folder.path(), false).unwrap();
+    later.join().unwrap();
+    assert_eq!(RunFolder::is_in_use(folder.path()), Some(false));
+}

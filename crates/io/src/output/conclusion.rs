@@ -161,15 +161,22 @@ impl Trend {
 /// What to change: `share` of the gap is what may be left.
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
+    let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
     if let (Trend::Falls(left), Some(last_t_s)) = (trend, metrics.last_t_s) {
-        let more = share.ln() / left.ln() / 4.0;
-        // Once more as much as it takes at this rate, which need not stay.
-        let end_s = nice(last_t_s * (1.0 + 1.25 * more));
-        if more.is_finite() && more <= LONGEST {
+        // What falls fast at first slows down to what the design does by itself, where that is known.
+        let more_s = (last_t_s * share.ln() / left.ln() / 4.0).max(takes_s.unwrap_or(0.0));
+        // A quarter more than it takes at this rate, which need not stay.
+        let end_s = nice(last_t_s + 1.25 * more_s);
+        if more_s.is_finite() && more_s <= LONGEST * last_t_s {
             advice.push(format!("run longer: at this rate `time.end_s = {end_s}` is enough"));
         }
     }
-    advice.extend(slow(record.prediction.as_ref(), metrics, share));
+    advice.extend(takes_s.map(|takes_s| {
+        format!(
+            "the design is slow, whatever the robots do: it needs some {} s more; larger weights, more links or larger roots make it faster",
+            about(takes_s)
+        )
+    }));
     advice.extend(hypotheses(record.verdicts));
     if let Some(clipped) = record.outcome.statistics.clipped
         && clipped.torque + clipped.rate > 0
@@ -192,8 +199,8 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
     advice
 }
 
-/// How long the design takes by itself, where that is longer than the run.
-fn slow(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<String> {
+/// How long the design takes by itself, s, where that is long beside the run.
+fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<f64> {
     let rate_per_s = match &prediction?.rate {
         PredictedRate::Roots { root_per_s: [rate_per_s, _], .. } | PredictedRate::Period { rate_per_s, .. } => {
             *rate_per_s
@@ -201,13 +208,7 @@ fn slow(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Opti
         PredictedRate::NoneSince(_) => return None,
     };
     let takes_s = share.ln() / rate_per_s;
-    let is_slow = rate_per_s < 0.0 && takes_s > metrics.last_t_s? / 4.0;
-    is_slow.then(|| {
-        format!(
-            "the design is slow, whatever the robots do: it needs some {} s more; larger weights, more links or larger roots make it faster",
-            about(takes_s)
-        )
-    })
+    (rate_per_s < 0.0 && takes_s > metrics.last_t_s? / 4.0).then_some(takes_s)
 }
 
 /// The hypotheses that keep the theorem from speaking, with the change that would let it.

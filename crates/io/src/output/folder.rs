@@ -4,6 +4,8 @@ use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
 
 use super::comparison::{DOCUMENT, PAGE};
 use super::disk::{Disk, DiskFile, SystemDisk};
@@ -15,6 +17,10 @@ use crate::scenario::run_folder::MANIFEST;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
 pub(super) const SEAL: &str = "summary.json";
+
+/// Between attempts to lock a folder.
+const PAUSES: [Duration; 4] =
+    [Duration::from_millis(2), Duration::from_millis(10), Duration::from_millis(40), Duration::from_millis(100)];
 
 /// Every file that a run may write, but for the copies of its inputs.
 pub(crate) const FILES: [&str; 14] = [
@@ -140,7 +146,7 @@ impl RunFolder {
 
     /// Whether a run writes into `path` now; nothing where the system cannot tell.
     pub fn is_in_use(path: &Path) -> Option<bool> {
-        match lock(path) {
+        match try_lock(path) {
             Ok(lock) => lock.map(|_| false),
             Err(_) => Some(true),
         }
@@ -178,8 +184,19 @@ fn missing_folders(path: &Path) -> Vec<PathBuf> {
     named.take_while(|folder| !folder.exists()).map(Path::to_owned).collect()
 }
 
-/// Keeps other runs out. Systems and disks that cannot lock a folder go without.
+/// Keeps other runs out. Who only looks whether a folder is in use has it for a moment, and so has who is ending: that is waited for.
 fn lock(path: &Path) -> Result<Option<File>, OutputError> {
+    for pause in PAUSES {
+        match try_lock(path) {
+            Err(_) => thread::sleep(pause),
+            locked => return locked,
+        }
+    }
+    try_lock(path)
+}
+
+/// Systems and disks that cannot lock a folder go without.
+fn try_lock(path: &Path) -> Result<Option<File>, OutputError> {
     let Ok(folder) = File::open(path) else { return Ok(None) };
     match folder.try_lock() {
         Ok(()) => Ok(Some(folder)),
