@@ -13,10 +13,8 @@ use super::table::NamedColumns;
 /// Writes header and rows; values that are not finite are `NaN`, `inf` and `-inf`.
 pub(crate) fn write(out: &mut impl Write, setup: &Setup, recording: &Recording) -> std::io::Result<()> {
     let mut table = ::csv::Writer::from_writer(out);
-    let mut header = names::table_header(setup, recording);
-    let leader = LeaderColumn::all(setup, &header);
-    header.extend(leader.iter().map(|column| column.name.clone()));
-    table.write_record(header).map_err(io_error)?;
+    table.write_record(names::table_header(setup, recording)).map_err(io_error)?;
+    let leader = LeaderColumn::all(setup);
     let mut field = Vec::new();
     for (row, t_s) in recording.t_s.iter().enumerate() {
         let columns = recording.columns.iter().map(|c| c.values.get(row).copied().unwrap_or(f64::NAN));

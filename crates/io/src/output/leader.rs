@@ -15,18 +15,15 @@ pub(crate) struct LeaderColumn<'a> {
 }
 
 impl<'a> LeaderColumn<'a> {
-    /// All of them, named apart from `others`; none where an agent leads or nobody does.
-    pub(crate) fn all(setup: &'a Setup, others: &[String]) -> Vec<LeaderColumn<'a>> {
+    /// All of them; none where no motion leads.
+    pub(crate) fn all(setup: &'a Setup) -> Vec<LeaderColumn<'a>> {
         let Some(leader) = setup.following().and_then(|following| following.motion()) else { return Vec::new() };
         let mut columns = Vec::new();
         for (derivative, signal) in [Signal::Position, Signal::Velocity].into_iter().enumerate() {
             for (axis, path) in leader.trajectory.paths().iter().enumerate() {
                 // It moves in the coordinates of those that follow.
                 let (own, unit) = (names::axis_name(setup, 0, axis), names::unit(setup, 0, signal, axis));
-                let mut name = format!("{}.{}.{own}", leader.name, signal.name());
-                while others.contains(&name) {
-                    name.push_str("~leader");
-                }
+                let name = format!("{}.{}.{own}", leader.name, signal.name());
                 columns.push(LeaderColumn { name, unit, path, derivative });
             }
         }

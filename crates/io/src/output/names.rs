@@ -9,6 +9,8 @@ use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::{AgentSetup, AxisUnit, Setup};
 
+use super::leader::LeaderColumn;
+
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
@@ -114,14 +116,14 @@ pub fn column_name(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> 
     }
 }
 
-/// The names of all columns of a table, `t_s` first. Should two be the same, later ones get a `~2`, `~3`, … at the end,
-/// because tables need distinct names.
+/// The names of all columns of a table, `t_s` first and those of a leader that is no agent last. Should two be the same, later
+/// ones get a `~2`, `~3`, … at the end, because tables need distinct names.
 pub fn table_header(setup: &Setup, recording: &Recording) -> Vec<String> {
     let mut taken = HashSet::new();
-    let mut header = vec!["t_s".to_owned()];
-    taken.insert("t_s".to_owned());
-    for column in &recording.columns {
-        let plain = column_name(setup, column.agent, column.signal, column.axis);
+    let recorded = recording.columns.iter().map(|c| column_name(setup, c.agent, c.signal, c.axis));
+    let leads = LeaderColumn::all(setup).into_iter().map(|column| column.name);
+    let mut header = Vec::new();
+    for plain in std::iter::once("t_s".to_owned()).chain(recorded).chain(leads) {
         let mut name = plain.clone();
         let mut copy = 2;
         while !taken.insert(name.clone()) {
@@ -172,7 +174,7 @@ pub fn gap_unit(setup: &Setup) -> String {
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let own = axis_unit(setup, agent, axis);
-    // Whoever has one axis of its own unit has others of no other.
+    // A chain has all of its axes, and all that is recorded of it, in units of its own.
     if axis_unit(setup, agent, 0) == Some(AxisUnit::Own) {
         return match signal.row().unit {
             Unit::Axis(1) => "1/s".into(),

@@ -21,9 +21,8 @@ pub(crate) const ROWS_PER_GROUP: usize = 8192;
 /// Writes the recording with title, digest, version and units in the file's metadata.
 pub(crate) fn write(out: &mut (impl Write + Send), record: &RunRecord<'_>) -> Result<()> {
     let recording = &record.outcome.recording;
-    let mut header = names::table_header(record.setup, recording);
-    let leader = LeaderColumn::all(record.setup, &header);
-    header.extend(leader.iter().map(|column| column.name.clone()));
+    let header = names::table_header(record.setup, recording);
+    let leader = LeaderColumn::all(record.setup);
     let fields = header
         .iter()
         .map(|name| {

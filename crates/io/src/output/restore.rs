@@ -16,7 +16,6 @@ use serde::Deserialize;
 use super::error::OutputError;
 use super::folder::RunFolder;
 use super::journal::JOURNAL;
-use super::leader::LeaderColumn;
 use super::metrics::Metrics;
 use super::record::{GoalOutcome, RunRecord};
 use super::remark::Remark;
@@ -398,8 +397,9 @@ pub(super) fn assign(
     if !expected.t_s.first().is_none_or(|first| first.is_finite()) {
         return Err(TableError::Times { row: 1 });
     }
+    let (recorded, leads) = header[1..].split_at(expected.columns.len());
     let mut missing = Vec::new();
-    for (column, name) in expected.columns.iter_mut().zip(&header[1..]) {
+    for (column, name) in expected.columns.iter_mut().zip(recorded) {
         match found.remove(name) {
             Some(values) if values.len() == expected.t_s.len() => column.values = values,
             Some(_) => return Err(TableError::NotNumbers { column: name.clone() }),
@@ -411,8 +411,8 @@ pub(super) fn assign(
         }
     }
     // What leads is worked out again.
-    for column in LeaderColumn::all(setup, &header) {
-        found.remove(&column.name);
+    for name in leads {
+        found.remove(name);
     }
     if let Some(column) = order.into_iter().find(|name| found.contains_key(name)) {
         return Err(TableError::UnknownColumn { column });

@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(read("package://arm/meshes/a.stl"), Ok("arm/meshes/a.stl".into()));
         assert_eq!(read("package://arm/../secret.stl"), outside);
         assert_eq!(read("../../secret.stl"), outside);
-        assert_eq!(read("../meshes/a.stl"), outside, "nobody says that it is a package");
+        assert_eq!(read("../meshes/a.stl"), outside, "no file says that it is a package");
         let secret = all.path().join("secret.stl");
         assert_eq!(read(secret.to_str().unwrap()), outside);
         assert_eq!(read(&format!("file://{}", secret.display())), outside);

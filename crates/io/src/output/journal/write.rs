@@ -138,9 +138,12 @@ impl<'f> Journal<'f> {
 
     fn head(&self) -> Head {
         let record = &self.start;
+        // What leads is in no row: it is worked out again.
+        let mut columns = names::table_header(record.setup, &record.outcome.recording);
+        columns.truncate(1 + record.outcome.recording.columns.len());
         let text = |input: &crate::scenario::InputFile| (input.name.clone(), input.source.text().to_owned());
         Head {
-            columns: names::table_header(record.setup, &record.outcome.recording),
+            columns,
             replaces_blake3: file_digest(&self.folder.path().join(SEAL)).ok(),
             scenario: record.scenario_text.to_owned(),
             inputs: record.inputs.iter().map(text).collect(),

@@ -1,13 +1,11 @@
 //! The interval of all cascaded variables ψ and of all messages on their way, as the run took it, beside what is guaranteed of it.
 
 use forwardstep_check::prediction::CascadeSpread;
-use forwardstep_sim::recording::Signal;
 use serde::Serialize;
 
 use super::super::guarantee::{Guarantee, GuaranteeFound};
 use super::super::names;
 use super::super::record::RunRecord;
-use super::text;
 
 /// The numbers of its series.
 #[derive(Serialize)]
@@ -31,9 +29,9 @@ impl CascadeIndex {
             Some(Guarantee::Found(found)) => widths.first().map(|first| add(&stairs(found, *first, t_s))),
             Some(Guarantee::NoneSince(_)) | None => None,
         };
-        let units = (0..record.setup.agents.len()).map(|agent| names::unit(record.setup, agent, Signal::Position, 0));
         CascadeIndex {
-            unit: text::units(units),
+            // The largest over all axes, as of a disagreement.
+            unit: names::gap_unit(record.setup),
             width: add(&widths),
             guaranteed,
             low: spread.low.iter().map(|end| add(end)).collect(),
