@@ -12,6 +12,25 @@ use forwardstep::io::scenario::SHIPPED_SCENARIOS;
 use support::{folder, forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
+/// Twelve carts, every other at the other end.
+const RING: &str = r#"format = 2
+title = "A ring"
+time = { end_s = 1, record_every_s = 0.1 }
+[[agents]]
+name = "cart"
+count = 12
+robot.point_mass = { dimension = 1, mass_kg = 1 }
+start.position_m = [[1], [-1], [1], [-1], [1], [-1], [1], [-1], [1], [-1], [1], [-0.8]]
+[reference.consensus]
+roots_per_s = [3, 4]
+exchange = "position_velocity"
+[law.known]
+[network]
+edges.ring = { direction = "both" }
+[goal]
+disagreement_below = 1e-3
+"#;
+
 /// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.
 const QUICK: &str = r#"
 format = 2
@@ -414,6 +433,23 @@ fn a_run_that_ends_too_early_says_so_and_how_long_would_be_enough() {
     assert!(advised.parse::<f64>().unwrap() < 30.0, "{advised}");
     let long = stdout(&run(advised).success());
     assert!(long.contains("in words") && long.contains(" agreed: ") && !long.contains("to change"), "{long}");
+}
+
+/// What disturbs neighbours fades in a moment; what has to go all around takes long, and is most of what is left.
+#[test]
+fn a_run_that_looks_quick_at_first_is_told_how_long_its_design_takes() {
+    let folder = folder();
+    let run = |end_s: &str| {
+        fs::write(folder.path().join("ring.toml"), RING.replace("end_s = 1", &format!("end_s = {end_s}"))).unwrap();
+        forwardstep(&folder, &["run", "ring.toml", "--out", "ring", "--force"])
+    };
+    for short in ["1", "2"] {
+        let text = stdout(&run(short).code(1));
+        let advised = text.split("`time.end_s = ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
+        assert!(advised.len() <= 3, "{advised}");
+        let long = stdout(&run(advised).success());
+        assert!(long.contains(" agreed: "), "{long}");
+    }
 }
 
 #[test]
