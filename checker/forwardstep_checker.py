@@ -566,8 +566,8 @@ MADE_FOR = {
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
-CHAIN_LAWS = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping")
-DESIGNS, LED = ("continuous", "differentiable", "without_acceleration", "swarm"), ("theorem-9", "remark-12", "swarm")
+CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping"), ("continuous", "observer")
+LED = {"differentiable": "theorem-9", "without_acceleration": "remark-12", "swarm": "swarm", "observer": "leader-observer"}
 
 # The gains of each law, by their keys. What is not written is positive by default.
 GAINS = {
@@ -937,7 +937,7 @@ def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
     if scenario.reference == "desired": return "desired-dynamics"
     if scenario.reference == "leader":
-        return dict(zip(DESIGNS, ("theorem-8" + scenario.over(), *LED))).get(scenario.body.get("design"), "no design")
+        return ({"continuous": "theorem-8" + scenario.over()} | LED).get(scenario.body.get("design"), "no design")
     kinds = {treated(agent) for agent in agents}
     if len(kinds) > 1: return "targets" if tracking else "mixture"
     tip = "tip-velocity" if any("tip_velocity" in agent.gains for agent in agents) else "theorem-6" + max(map(extension, agents))
@@ -956,7 +956,7 @@ def theorem(scenario):
 def requirements(scenario):
     agents, reference, design, control = scenario.agents, scenario.reference, scenario.body.get("design"), scenario.control
     agreeing, leading = reference in ("consensus", "pure_integral", "backstepping"), reference == "leader"
-    turns, late = (leading and design == DESIGNS[0] and scenario.over() == each for each in ("-switching", "-late"))
+    turns, late = (leading and design in FIRST_ORDER and scenario.over() == each for each in ("-switching", "-late"))
     kinds = {treated(agent) for agent in agents if agent.index != scenario.leader}
     tips, flying, chains, lagrangian, adaptive = ([agent for agent in agents if agent.law in laws] for laws in (
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
@@ -971,8 +971,8 @@ def requirements(scenario):
         (agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability"),
         (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
         (leading, "leader-in-every-graph dwell-time" if turns else "leader-reaches-all"),
-        (leading and (late or design in DESIGNS[1:3]), "constant-weights"), (rooted(scenario) or leading and design != "swarm", "hurwitz"),
-        (leading and design == "swarm", "printed-design mutual-weights swarm-coupling"),
+        (leading and (late or design not in (*FIRST_ORDER, "swarm")), "constant-weights"),
+        (rooted(scenario) or leading and design != "swarm", "hurwitz"), (design == "swarm", "printed-design mutual-weights swarm-coupling"),
         (reference != "tracking" and scenario.varying(), "bounded-weights"), (any(agent.pushes for agent in agents), "pushes-end"),
         (len(kinds) > 1 and not all(agent.tracks for agent in agents), "one-kind"),
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if treated(a) == a.law.replace("_", " "))),
@@ -1354,17 +1354,17 @@ def set_valued(scenario):
     h = exact(scenario.body.get("sign_period_s", Fraction(1, 1000)), "sign_period_s")
     h = h if scenario.control is None else 1 / positive(scenario.control.get("sample_hz"), "sample_hz")
     (alpha, _), (a, b) = coefficients(scenario), roots_of(scenario.body)[0]
-    mean = alpha * (a if scenario.body.get("design") == "continuous" else 1 + abs(b) / a)
+    mean = alpha * (a if scenario.body.get("design") in FIRST_ORDER else 1 + abs(b) / a)
     return scenario.body.get("sign", "implicit") == "implicit" and 10_000 * h * h * mean <= 1 and h < scenario.end_s
 
 # α and β of the reference dynamics of a leader: p + α, or p² + β p + α.
 def coefficients(scenario):
     roots, design = roots_of(scenario.body), scenario.body.get("design")
-    such(len(roots) == (1 if design == "continuous" else 2), "`roots_per_s` has not as many entries as the design needs")
-    such(min(roots)[0] > 0 and (design != "continuous" or roots[0][1] == 0), "`roots_per_s` must be positive")
+    such(len(roots) == 1 + (design != "continuous") and (design != "observer" or "alpha" not in scenario.body), "not roots of the design")
+    such(min(roots)[0] > 0 and not (design in FIRST_ORDER and any(b for _, b in roots)), "`roots_per_s` must be positive")
     if "alpha" in scenario.body: return positive(scenario.body["alpha"], "alpha"), positive(scenario.body.get("beta", 1), "beta")
     (a, b), (c, d) = roots[0], roots[-1]
-    return (a, Fraction(1)) if design == "continuous" else (a * c - b * d, a + c)
+    return (a, Fraction(1)) if design in FIRST_ORDER else (a * c - b * d, a + c)
 
 # The chain that is named.
 def find(claim, agent):
@@ -1743,7 +1743,7 @@ def drive(claim):
     scenario, design = claim.scenario, claim.scenario.body.get("design")
     require(claim.proof, scenario.motion is not None, "is of no motion")
     alpha, beta = coefficients(scenario)
-    factors = {"continuous": (0, alpha, 1, 0), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
+    factors = {**dict.fromkeys(FIRST_ORDER, (0, alpha, 1, 0)), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
     gamma = positive(scenario.body.get("gain"), "gain")
     rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=tree) for tree in scenario.motion]
     sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]

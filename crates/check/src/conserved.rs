@@ -124,7 +124,9 @@ impl Conserved<'_> {
             )
         };
         let velocity = match setup.exchange {
-            Exchange::PositionVelocity => setup.agents[i].roots_per_s.first_real().map_or(0.0, f64::recip),
+            Exchange::PositionVelocity | Exchange::Estimates => {
+                setup.agents[i].roots_per_s.first_real().map_or(0.0, f64::recip)
+            }
             Exchange::Position => 0.0,
         };
         let (mut degree, mut past, mut past_at_rest) = (0.0, Tally::default(), Tally::default());

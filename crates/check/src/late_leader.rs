@@ -6,9 +6,9 @@
 //! all components is no smaller than c. Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on
 //! rounding.
 
-use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
 use forwardstep_sim::leader::Following;
+use forwardstep_sim::{Exchange, Setup};
 
 /// Edges that may be visited by sweeping.
 const MOST_VISITS: usize = 50_000_000;
@@ -67,6 +67,7 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
         (0..count).map(|_| Row { degree: 0.0, terms: 0, weight_s: 0.0, heard: Vec::new() }).collect();
     // Controllers that sample hear up to a period later.
     let period_s = setup.control.as_ref().map_or(0.0, |control| 1.0 / control.sample_hz);
+    let observes = setup.exchange == Exchange::Estimates;
     for edge in edges {
         let Some(to) = *index.get(edge.to)? else { continue };
         let weight = edge.weight.constant()?;
@@ -77,7 +78,9 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
         let row = rows.get_mut(to)?;
         row.degree += weight;
         row.terms += 1;
-        row.weight_s += weight * (known.bound_s + period_s);
+        // What an observer tells is what it held a sample ago.
+        let told_s = if observes && index.get(edge.from)?.is_some() { period_s } else { 0.0 };
+        row.weight_s += weight * (known.bound_s + period_s + told_s);
         row.heard.extend(index.get(edge.from)?.map(|from| (from, weight)));
     }
     Some(rows)

@@ -85,6 +85,8 @@ pub enum Theorem {
     Remark12,
     /// Swarm tracking, named in Remark 11.
     Swarm,
+    /// An observer of the leader, of the kind that Remark 11 names for contrast.
+    LeaderObserver,
     /// (43) with desired dynamics that are no design of the paper.
     Desired,
     /// What the author of a law, or of reference dynamics, from outside states, with its source.
@@ -125,6 +127,7 @@ impl Theorem {
             Theorem::Theorem9 => "theorem-9",
             Theorem::Remark12 => "remark-12",
             Theorem::Swarm => "swarm",
+            Theorem::LeaderObserver => "leader-observer",
             Theorem::Desired => "desired-dynamics",
             Theorem::Declared(_) => "declared",
         }
@@ -165,6 +168,7 @@ impl Theorem {
             | Theorem::Theorem6Redundant
             | Theorem::PassivityFilter
             | Theorem::TipVelocity
+            | Theorem::LeaderObserver
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -187,7 +191,7 @@ impl fmt::Display for Theorem {
             }
             Theorem::OwnOrders { exchange, least, most } => {
                 let dynamics = match exchange {
-                    Exchange::PositionVelocity => "(a5)",
+                    Exchange::PositionVelocity | Exchange::Estimates => "(a5)",
                     Exchange::Position => "(24)",
                 };
                 return write!(f, "the argument of Theorem 3, reference dynamics {dynamics} of orders {least} to {most}");
@@ -236,6 +240,9 @@ impl fmt::Display for Theorem {
             Theorem::Remark12 => "Remark 12, reference dynamics (122)",
             Theorem::Desired => "Section IV, (43) with desired dynamics that are no design of the paper",
             Theorem::Swarm => "no theorem of the paper: swarm tracking (Remark 11) as derived for this software",
+            Theorem::LeaderObserver => {
+                "no theorem of the paper: an observer of the leader, of the kind that Remark 11 speaks of, as derived for this software"
+            }
         })
     }
 }

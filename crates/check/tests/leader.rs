@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use common::kinds::{fading_power_of_time, formula, power_of_time};
 use common::{About, axis, edge};
-use forwardstep_check::{Answer, Id, Report, SamplingMargin, Theorem, check, practical};
+use forwardstep_check::{Answer, Id, Report, SamplingMargin, Source, Theorem, check, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::Choice;
@@ -58,7 +58,10 @@ fn setup(design: FollowingDesign, path: Path, gain: f64) -> Setup {
     Setup {
         agents: vec![mass(1), mass(2)],
         reference: Arc::new(following),
-        exchange: Exchange::PositionVelocity,
+        exchange: match design {
+            FollowingDesign::Observer { .. } => Exchange::Estimates,
+            _ => Exchange::PositionVelocity,
+        },
         network: Network {
             agents: 3,
             schedule: Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
@@ -217,6 +220,56 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
     let report = check(&switching);
     assert_eq!(report.theorem, Theorem::SwitchingLeader);
     assert_eq!(answer(&report, "in each of the graphs").0, Answer::Violated);
+}
+
+/// Over one graph, graphs that take turns, and late links: the same hypotheses with the same answers, but for the theorem and whose it is.
+#[test]
+fn own_the_observer_is_judged_as_110_is_but_for_whose_it_is() {
+    let phase = |edges| Phase { dwell_s: 1.0, edges };
+    let graphs = [
+        Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
+        Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
+        Schedule::periodic(vec![
+            phase(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
+            phase(vec![edge(2, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
+        ]),
+        Schedule::periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]),
+    ];
+    for (graph, delay_s, gain) in
+        graphs.iter().flat_map(|graph| [(graph, 0.0, 3.0), (graph, 0.1, 3.0), (graph, 0.0, 2.2)])
+    {
+        let [told, observed] = [FollowingDesign::Continuous, FollowingDesign::Observer { kappa: 0.25 }].map(|design| {
+            let mut setup = setup(design, wave(), gain);
+            setup.network.schedule = graph.clone();
+            setup.network.delays[0] = Delay::constant(delay_s);
+            check(&setup)
+        });
+        let asked = |report: &Report| {
+            let each = report.hypotheses.iter().filter(|one| one.id != Id::Hurwitz);
+            each.map(|one| (one.id, one.answer(), one.because())).collect::<Vec<_>>()
+        };
+        assert_eq!(asked(&told), asked(&observed));
+        assert_eq!((&observed.theorem, observed.theorem.source()), (&Theorem::LeaderObserver, Source::Derived));
+        let near = |report: &Report| report.promises.split(';').next().map(str::to_owned);
+        assert_eq!(near(&told), near(&observed));
+        // The slower of α = 1 and κ.
+        assert!(answer(&observed, "Hurwitz").1.contains("0.25"), "{:?}", answer(&observed, "Hurwitz"));
+    }
+}
+
+/// Estimates that samples tell are a sample older than what is measured, but for those of a leader.
+#[test]
+fn own_what_a_sampled_observer_tells_is_a_sample_older() {
+    let near = |design| {
+        let mut setup = setup(design, wave(), 3.0);
+        setup.network.delays[0] = Delay::constant(0.1);
+        let report = check(&setup.sampled(100.0));
+        report.promises.split("exceeds ").nth(1).unwrap().split(';').next().unwrap().parse::<f64>().unwrap()
+    };
+    let drive = 5.0_f64.sqrt();
+    let measured = near(FollowingDesign::Continuous) / drive;
+    let told = near(FollowingDesign::Observer { kappa: 2.0 }) / drive;
+    assert!((measured - 0.22).abs() < 1e-3 && (told - 0.23).abs() < 1e-3, "{measured} {told}");
 }
 
 #[test]

@@ -20,6 +20,10 @@ pub enum Signal {
     ReferenceIntegral(u8),
     /// ς, the value of a set-valued sign, within [−1, 1].
     Selection,
+    /// x̂, where an agent that observes its leader believes it to be.
+    LeaderPosition,
+    /// v̂, how fast it believes it to move.
+    LeaderVelocity,
     /// s = q̇ − z, or d^(k−1)x/dt^(k−1) − z for a plant of order k; under backstepping the errors of all its steps.
     TrackingError,
     /// τ, or any other input u, after any limit.
@@ -216,6 +220,8 @@ impl Signal {
             Signal::Reference(k) => Row::new(format!("d{k}z"), Axis(k.saturating_add(1)), Axes, WithAll).jumps(),
             Signal::ReferenceIntegral(k) => Row::new(format!("v{}", k.saturating_add(1)), Axis(k.saturating_add(1)), Axes, card("Integrals of the reference", "v, in the place of derivatives of z")).jumps(),
             Signal::Selection => Row::new("selection", Fixed("1"), Axes, card("Set-valued sign", "ς, within [−1, 1]")).jumps(),
+            Signal::LeaderPosition => Row::new("leader_q", Axis(0), Axes, card("Where the leader is thought to be", "x̂, as estimated")),
+            Signal::LeaderVelocity => Row::new("leader_dq", Axis(1), Axes, card("How fast the leader is thought to move", "v̂, as estimated")),
             Signal::TrackingError => Row::new("s", Axis(1), Axes, WithAll),
             Signal::Torque => Row::new("tau", Torque, Axes, WithAll).jumps(),
             Signal::Estimate => Row::new("theta_hat", Fixed("SI"), Parameters, WithAll),

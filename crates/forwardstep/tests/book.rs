@@ -112,7 +112,7 @@ fn every_listing_does_what_the_book_says() {
         let folder = tempfile::tempdir().unwrap();
         for (kind, lines) in blocks(&text) {
             match kind.split_once(' ') {
-                Some(("toml", file)) => fs::write(folder.path().join(file), lines.join("\n") + "\n").unwrap(),
+                Some((_, file)) => fs::write(folder.path().join(file), lines.join("\n") + "\n").unwrap(),
                 _ if kind == "console" => {
                     commands += lines.iter().filter(|line| line.starts_with("$ ")).count();
                     check(&chapter, folder.path(), &lines);

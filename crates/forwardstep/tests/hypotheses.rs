@@ -13,8 +13,9 @@ use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check};
 use forwardstep::core::law::ParameterBounds;
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
+use forwardstep::sim::leader::{Following, FollowingDesign};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
-use forwardstep::sim::{Adaptive, PassivityFilterLaw, Setup, TaskSpaceLaw};
+use forwardstep::sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, TaskSpaceLaw};
 
 fn shipped(name: &str) -> Setup {
     open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
@@ -98,6 +99,16 @@ fn own_orders() -> Setup {
     setup
 }
 
+/// Theorem 8 with an observer in the place of (110).
+fn observed() -> Setup {
+    let mut setup = shipped("theorem-8");
+    setup.exchange = Exchange::Estimates;
+    assert!(setup.change_reference(|following: &mut Following| {
+        following.design = FollowingDesign::Observer { kappa: 2.0 };
+    }));
+    setup
+}
+
 /// `shipped` with another of what its desired dynamics are made of.
 fn desired(shipped_name: &str, change: impl FnOnce(&mut Desired)) -> Setup {
     let mut setup = shipped(shipped_name);
@@ -120,6 +131,7 @@ fn reports() -> Vec<Report> {
         filtered_spacecraft(),
         own_orders(),
         by_velocity(),
+        observed(),
         desired("desired-dynamics", |desired| desired.heard = vec![1.0]),
     ];
     let shipped = SHIPPED_SCENARIOS.iter().map(|scenario| shipped(scenario.name));
@@ -143,6 +155,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "chains-track",
         "continuous-thrust",
         "desired-dynamics",
+        "leader-observer",
         "mixture",
         "passivity-filter",
         "position-only-tracks",

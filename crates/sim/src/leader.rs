@@ -48,6 +48,12 @@ pub enum FollowingDesign {
         /// k.
         coupling: f64,
     },
+    /// Everybody estimates where the leader is and how fast it moves, tells its estimates, and follows them; our own derivation, see
+    /// [`forwardstep_core::reference::Observer`].
+    Observer {
+        /// κ, 1/s.
+        kappa: f64,
+    },
 }
 
 /// A leader, and the design with its gains, which all agents share.
@@ -55,11 +61,11 @@ pub enum FollowingDesign {
 pub struct Following {
     /// What is followed.
     pub leader: Leading,
-    /// (110), (119), (122) or swarm tracking.
+    /// (110), (119), (122), swarm tracking or an observer of the leader.
     pub design: FollowingDesign,
-    /// α: 1/s in (110), 1/s² in (119) and (122).
+    /// α: 1/s in (110) and observers, 1/s² in (119) and (122).
     pub alpha: f64,
-    /// β, 1/s; not used by (110).
+    /// β, 1/s; not used by (110) and observers.
     pub beta: f64,
     /// γ.
     pub gain: f64,
@@ -81,7 +87,7 @@ impl Following {
     /// The sign as the reference dynamics have it.
     pub fn sliding(&self) -> Sliding {
         let (derived, beta) = match self.design {
-            FollowingDesign::Continuous => (Derived::Nothing, 1.0),
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => (Derived::Nothing, 1.0),
             FollowingDesign::Differentiable => (Derived::Acceleration, self.beta),
             FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
                 (Derived::ReferenceAcceleration, self.beta)
@@ -95,11 +101,14 @@ impl Following {
         let at = "reference.leader";
         // α and β come from the roots.
         positive(at, "alpha", self.alpha)?;
-        if self.design != FollowingDesign::Continuous {
-            positive(at, "beta", self.beta)?;
-        }
-        if let FollowingDesign::Swarm { coupling } = self.design {
-            positive(at, "coupling", coupling)?;
+        match self.design {
+            FollowingDesign::Continuous => {}
+            FollowingDesign::Observer { kappa } => positive(at, "kappa", kappa)?,
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => positive(at, "beta", self.beta)?,
+            FollowingDesign::Swarm { coupling } => {
+                positive(at, "beta", self.beta)?;
+                positive(at, "coupling", coupling)?;
+            }
         }
         positive(at, "gain", self.gain)?;
         match self.choice {
@@ -116,7 +125,7 @@ impl Following {
     /// γ must exceed the largest size of it.
     pub fn drive(&self) -> [f64; 5] {
         match self.design {
-            FollowingDesign::Continuous => [0.0, self.alpha, 1.0, 0.0, 0.0],
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => [0.0, self.alpha, 1.0, 0.0, 0.0],
             FollowingDesign::Swarm { .. } => [0.0, 0.0, 0.0, 1.0, 0.0],
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
                 [0.0, self.alpha, self.beta, 1.0, 0.0]
@@ -132,7 +141,7 @@ impl Following {
     }
 }
 
-/// (110), (119), (122) or swarm tracking: everybody follows a leader, the last vertex of the network.
+/// (110), (119), (122), swarm tracking or an observer: everybody follows a leader, the last vertex of the network.
 impl ReferenceDynamics for Following {
     fn words(&self) -> ReferenceWords {
         ReferenceWords { name: "following a leader", key: "leader" }
@@ -141,7 +150,13 @@ impl ReferenceDynamics for Following {
     fn interface(&self) -> ReferenceInterface {
         ReferenceInterface {
             family: ReferenceFamily::Leader,
-            exchanges: &[Exchange::PositionVelocity],
+            exchanges: match self.design {
+                FollowingDesign::Observer { .. } => &[Exchange::Estimates],
+                FollowingDesign::Continuous
+                | FollowingDesign::Differentiable
+                | FollowingDesign::WithoutAcceleration
+                | FollowingDesign::Swarm { .. } => &[Exchange::PositionVelocity],
+            },
             roots: Roots::None,
             manipulability: false,
             nonlinear_coupling: false,
@@ -150,7 +165,7 @@ impl ReferenceDynamics for Following {
 
     fn free_derivatives(&self, _: usize) -> usize {
         match self.design {
-            FollowingDesign::Continuous => 1,
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => 1,
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => 2,
         }
     }
@@ -197,6 +212,9 @@ impl ReferenceDynamics for Following {
         let (agents, sliding) = (assembly.agents().len(), self.sliding());
         Ok(match self.design {
             FollowingDesign::Continuous => Dynamics::position_velocity(reference::Following::new(agents, sliding)),
+            FollowingDesign::Observer { kappa } => {
+                Dynamics::estimates(reference::Observer::new(agents, sliding, kappa))
+            }
             FollowingDesign::Swarm { coupling } => {
                 Dynamics::position_velocity(SmoothFollowing::swarm(agents, sliding, coupling))
             }

@@ -4,17 +4,19 @@
 mod common;
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use common::following::{DESIGNS, arms, masses};
+use common::following::{DESIGNS, OBSERVER, arms, masses, observes};
 use common::{balance_residual, column, columns, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
+use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::trajectory::{Path, Trajectory};
-use forwardstep_sim::{Adaptive, Method, Outcome, Setup, Signal, simulate};
+use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
+use forwardstep_sim::{Adaptive, Method, Outcome, Setup, Signal, simulate, simulate_samples};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;
@@ -68,8 +70,13 @@ fn without_s(problem: &mut Setup) -> (Outcome, Vec<[f64; 3]>) {
         let mut leader = [[0.0; 5]];
         following.motion().unwrap().trajectory.jets(outcome.recording.t_s[row], &mut leader);
         [0, 1, 2].map(|agent| {
-            let velocity = column(&outcome, agent, Signal::Velocity, 0)[row] - leader[0][1];
-            (velocity + following.alpha * column(&outcome, agent, Signal::Error, 0)[row]).abs()
+            let [x, v] = if observes(following.design) {
+                [Signal::LeaderPosition, Signal::LeaderVelocity]
+            } else {
+                [Signal::Position, Signal::Velocity]
+            };
+            let of = |signal, derivative: usize| column(&outcome, agent, signal, 0)[row] - leader[0][derivative];
+            (of(v, 1) + following.alpha * of(x, 0)).abs()
         })
     };
     let rows = (0..outcome.recording.t_s.len()).map(away).collect();
@@ -106,11 +113,38 @@ fn comes_closer(problem: &mut Setup) -> Result<f64, String> {
 /// at least, until nobody is away. ξ has one derivative of the leader more for each differentiator.
 #[test]
 fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain() {
-    let mut problem = masses(FollowingDesign::Continuous);
-    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
-    let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
-    problem.network.schedule = Schedule::fixed(all.collect());
-    comes_closer(&mut problem).unwrap();
+    for design in [FollowingDesign::Continuous, OBSERVER] {
+        let mut problem = masses(design);
+        let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+        let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
+        problem.network.schedule = Schedule::fixed(all.collect());
+        comes_closer(&mut problem).unwrap();
+    }
+}
+
+/// The same of an observer whatever s is: masses that weigh three times what their laws take them for, pushed on the way.
+#[test]
+fn prop_no_robot_enters_an_observer() {
+    let mut problem = masses(OBSERVER);
+    let alone = without_s(&mut problem).1;
+    for agent in &mut problem.agents {
+        agent.robot.theta[0] *= 3.0;
+        agent.law = Arc::new(Adaptive {
+            damping: Gain::Number(8.0),
+            adaptation: Gain::Number(1.0),
+            estimate_start: vec![0.3],
+            bounds: None,
+        });
+        let effect = Effect::Torque(Course::Each(vec![Function::Constant(-15.0)]));
+        agent.pushes = vec![Push { effect, from_s: 1.0, until_s: 2.0 }];
+    }
+    let (outcome, pushed) = without_s(&mut problem);
+    let moved =
+        (0..3).map(|agent| column(&outcome, agent, Signal::Error, 0).iter().fold(0.0, |m: f64, e| m.max(e.abs())));
+    assert!(moved.fold(0.0, f64::max) > 0.5);
+    for (alone, pushed) in alone.iter().zip(&pushed) {
+        assert!(alone.iter().zip(pushed).all(|(a, b)| (a - b).abs() < 1e-9), "{alone:?} {pushed:?}");
+    }
 }
 
 /// Numbers from 0 to 1, the same for the same seed.
@@ -151,7 +185,7 @@ fn rooted(draw: &mut impl FnMut() -> f64, delays: usize) -> Vec<Edge> {
 fn prop_over_graphs_that_take_turns_the_farthest_comes_closer_by_the_margin_of_the_gain() {
     for seed in 1..=40 {
         let mut draw = draws(seed);
-        let mut problem = masses(FollowingDesign::Continuous);
+        let mut problem = masses(if seed % 2 == 0 { OBSERVER } else { FollowingDesign::Continuous });
         problem.time.end_s = 3.0;
         let phases = (0..2 + (3.0 * draw()) as usize)
             .map(|_| Phase { dwell_s: 0.02 + 0.5 * draw() * draw(), edges: rooted(&mut draw, 1) })
@@ -231,7 +265,7 @@ fn prop_with_delays_everybody_comes_as_near_to_the_leader_as_they_let_it() {
     let mut nearest: f64 = 0.0;
     for seed in 1..=20 {
         let mut draw = draws(seed);
-        let mut problem = masses(FollowingDesign::Continuous);
+        let mut problem = masses(if seed % 2 == 0 { OBSERVER } else { FollowingDesign::Continuous });
         problem.time.end_s = 14.0;
         let longest_s = [0.02 + 0.2 * draw(), 0.02 + 0.1 * draw(), 0.05];
         problem.network.delays = vec![
@@ -383,4 +417,73 @@ fn val_following_agrees_with_an_independent_solver() {
         let worst = truth.largest_difference(masses(design));
         assert!(worst < 1e-6, "({}): {worst:e}", truth.name);
     }
+}
+
+/// Against `validation/observer`, which integrates the errors of the proof.
+#[test]
+fn val_an_observer_agrees_with_an_independent_solver() {
+    let truths: serde_json::Value =
+        serde_json::from_str(include_str!("../../../validation/observer/observer.json")).unwrap();
+    let mut setup = masses(FollowingDesign::Observer { kappa: 1.5 });
+    let waves = vec![Sinusoid { amplitude: 0.6, rad_per_s: 0.8, phase_rad: 0.3 }];
+    let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.0, waves }]).unwrap();
+    assert!(setup.change_reference(|following: &mut Following| {
+        following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
+        (following.alpha, following.gain, following.choice) = (1.2, 2.0, Choice::Layer { width: 0.05 });
+    }));
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        agent.robot.theta = vec![[0.8, 1.5, 2.3][k]];
+        agent.law = Arc::new(Adaptive {
+            damping: Gain::Number(3.0),
+            adaptation: Gain::Number(2.0),
+            estimate_start: vec![0.2],
+            bounds: None,
+        });
+        (agent.start.q, agent.start.dq) = (vec![[0.9, -0.7, 0.4][k]], vec![[0.1, -0.3, 0.2][k]]);
+        agent.start.reference = vec![vec![0.0]];
+    }
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    let edges = vec![edge(0, 3, 1.4), edge(1, 0, 0.9), edge(1, 2, 0.5), edge(2, 1, 1.1)];
+    setup.network.schedule = Schedule::fixed(edges);
+    let times: Vec<f64> = truths[0]["t_s"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
+    (setup.time.end_s, setup.time.record_every_s) = (times.last().unwrap() + 0.1, times[0]);
+    setup.solver.method = Method::Adaptive { rtol: 1e-11, atol: 1e-12 };
+    let outcome = run(&setup);
+    let signals = [
+        ("q", Signal::Position),
+        ("dq", Signal::Velocity),
+        ("x", Signal::LeaderPosition),
+        ("v", Signal::LeaderVelocity),
+        ("theta_hat", Signal::Estimate),
+    ];
+    for (agent, (name, signal)) in (0..3).flat_map(|agent| signals.map(|signal| (agent, signal))) {
+        let values = column(&outcome, agent, signal, 0);
+        for (row, truth) in truths[0]["agents"][agent][name].as_array().unwrap().iter().enumerate() {
+            let apart = (values[row + 1] - truth.as_f64().unwrap()).abs();
+            assert!(apart < 1e-7, "{name} of agent {agent}, row {row}: {apart:e}");
+        }
+    }
+}
+
+/// Sampled observers tell what they held a sample ago, and come to the continuous ones as samples come faster.
+#[test]
+fn prop_sampled_observers_come_to_continuous_ones() {
+    let mut setup = arms(OBSERVER, Choice::Layer { width: 0.05 }, 0.8, 6.0);
+    setup.agents.iter_mut().for_each(|agent| agent.start.dq = vec![0.2, -0.1]);
+    common::assert_first_order(&setup, 400.0);
+    // What is told first is what each starts with, not zeros.
+    let mut first = Vec::new();
+    setup.time.end_s = 0.005;
+    let setup = sampled(setup, 500.0);
+    simulate_samples(&setup, &mut |_| ControlFlow::Continue(()), &mut |sample| {
+        first.push((sample.agent, sample.sample, sample.message.to_vec()));
+    })
+    .unwrap();
+    for (agent, _, message) in first.iter().filter(|(_, sample, _)| *sample == 0) {
+        assert_eq!(message[..2], setup.agents[*agent].start.q[..]);
+        assert_eq!(message[2..], [0.2, -0.1]);
+    }
+    let second: Vec<_> = first.iter().filter(|(_, sample, _)| *sample == 2).collect();
+    assert_eq!(second.len(), 4);
+    assert!(second.iter().all(|(agent, _, message)| message[..2] != setup.agents[*agent].start.q[..]));
 }

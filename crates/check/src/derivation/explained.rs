@@ -13,6 +13,7 @@ use super::form::{Combination, Form, Letter, Links, Quantity};
 use super::formula::{Formula, Sign, Symbol};
 use super::lower::{self, ChainError, Lower, Rubbing};
 use super::notation::Notation;
+use super::observer::{self, Observer};
 use super::places::Places;
 use super::polynomial::Polynomial;
 use super::reduction::Reduced;
@@ -39,6 +40,9 @@ impl Case<'_> {
             (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
             (_, Step::TipVelocity([kappa, alpha])) => task_space::by_velocity(self, kappa, alpha),
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
+                if let Some(observer) = self.observer() {
+                    return observer::explained(self, &observer);
+                }
                 let Some(dynamics) = self.dynamics() else {
                     return self.silent("Its reference dynamics have too few roots for its plant.");
                 };
@@ -83,11 +87,17 @@ impl Case<'_> {
         }
     }
 
+    /// An observer of the leader.
+    pub(super) fn observer(&self) -> Option<Observer> {
+        let Led::Leader(FollowingDesign::Observer { kappa }, [alpha, _, gamma]) = &self.led else { return None };
+        Some(Observer { alpha: alpha.clone(), gamma: gamma.clone(), kappa: Number::written(*kappa) })
+    }
+
     /// (119), (122) or swarm tracking.
     pub fn smooth(&self) -> Option<Smooth> {
         let Led::Leader(design, [alpha, beta, gamma]) = &self.led else { return None };
         let (by_itself, coupling) = match design {
-            FollowingDesign::Continuous => return None,
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => return None,
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => (true, 1.0),
             FollowingDesign::Swarm { coupling } => (false, *coupling),
         };
@@ -243,17 +253,24 @@ impl Case<'_> {
     }
 
     /// What a sign is taken of.
-    fn signs(&self, section: Section, notation: &Notation) -> Section {
+    pub(super) fn signs(&self, section: Section, notation: &Notation) -> Section {
         let Led::Leader(design, [alpha, beta, _]) = &self.led else { return section };
         let (q, z) = (Letter::Position, Letter::Reference);
         let (base, above, xi) = match design {
             FollowingDesign::Continuous => ("ξ", "", vec![(q, Polynomial::factor(alpha))]),
+            FollowingDesign::Observer { .. } => ("ξ", "", vec![(Letter::Observed, Polynomial::factor(alpha))]),
             FollowingDesign::Differentiable => ("ξ", "∗", vec![(q, &Polynomial::power(2) + &low(alpha, beta))]),
             FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
                 ("ξ", "∗∗", vec![(z, Polynomial::power(1)), (q, low(alpha, beta))])
             }
         };
-        let symbol = |index: &'static str| Formula::from(Symbol::new(base).above(above).below(index));
+        let measured = *design == FollowingDesign::Continuous;
+        let place = if measured { "(4)" } else { "" };
+        let estimated = matches!(design, FollowingDesign::Observer { .. });
+        let symbol = |index: &'static str| {
+            let symbol = Symbol::new(base).above(above).below(index);
+            Formula::from(if estimated { symbol.hat() } else { symbol })
+        };
         let of = |all: Combination, (letter, a): (Letter, Polynomial)| all.plus(Quantity::own(letter), &a);
         let form = Form::own(xi.into_iter().fold(Combination::default(), of));
         let difference = Formula::sum([(Sign::Plus, symbol("i")), (Sign::Minus, symbol("j"))]);
@@ -266,7 +283,7 @@ impl Case<'_> {
         section
             .words("ς is a value of the set-valued sign; vertex 0 is the leader.")
             .formula(selection, "")
-            .formula(Formula::equal(symbol("i"), notation.form(&form)), if above.is_empty() { "(4)" } else { "" })
+            .formula(Formula::equal(symbol("i"), notation.form(&form)), place)
     }
 
     fn controller(&self, notation: &Notation, places: &Places) -> Section {

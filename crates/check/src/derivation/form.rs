@@ -46,6 +46,8 @@ pub enum Letter {
     Variable(usize),
     /// The trajectory to be followed.
     Target,
+    /// x̂, where an agent believes its leader to be; its derivative is v̂.
+    Observed,
     /// The integrated variable of (3), (23), (119) and (122).
     Integral,
     /// s.

@@ -29,6 +29,7 @@ pub mod formula;
 pub mod laplacian;
 pub mod lower;
 pub mod notation;
+mod observer;
 mod places;
 pub mod polynomial;
 #[cfg(test)]

@@ -71,6 +71,8 @@ impl Notation {
             Letter::Target => {
                 symbol(self.position).below(if index.is_empty() { "d".into() } else { format!("d,{index}") })
             }
+            Letter::Observed if k == 0 => symbol("x").hat(),
+            Letter::Observed => symbol("v").hat().derivative(k - 1),
             Letter::Integral => symbol("η"),
             Letter::Error => symbol("s").above(if self.starred_error { "∗" } else { "" }),
             Letter::Filter => symbol("y"),
@@ -251,6 +253,7 @@ impl Notation {
             Letter::Position
             | Letter::Deviation
             | Letter::Target
+            | Letter::Observed
             | Letter::Integral
             | Letter::Error
             | Letter::Filter

@@ -117,6 +117,9 @@ fn leader(design: &FollowingDesign) -> Places {
         FollowingDesign::WithoutAcceleration => {
             Places { identity: "(aa13)", error: "(5)", reference: "(122)", ..Places::default() }
         }
+        FollowingDesign::Observer { .. } => {
+            Places { error: "(5)", reference: "named in Remark 11, not printed", ..Places::default() }
+        }
         FollowingDesign::Swarm { .. } => Places {
             identity: "(aa13)",
             error: "(5)",

@@ -98,6 +98,7 @@ fn variable(quantity: Quantity) -> Option<usize> {
         | Letter::Deviation
         | Letter::ReferenceDeviation
         | Letter::Target
+        | Letter::Observed
         | Letter::Integral
         | Letter::Error
         | Letter::Filter

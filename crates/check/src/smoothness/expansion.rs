@@ -172,6 +172,7 @@ impl Affine {
         match &self.dynamics {
             Dynamics::Position(reference) => evaluate(&**reference, self.axes, own, degree, sums),
             Dynamics::PositionVelocity(reference) => evaluate(&**reference, self.axes, own, degree, sums),
+            Dynamics::Estimates(reference) => evaluate(&**reference, self.axes, own, degree, sums),
         }
     }
 
@@ -179,6 +180,7 @@ impl Affine {
         match &self.dynamics {
             Dynamics::Position(reference) => (reference.vectors(), 1),
             Dynamics::PositionVelocity(reference) => (reference.vectors(), 2),
+            Dynamics::Estimates(reference) => (reference.vectors(), 2),
         }
     }
 
@@ -186,6 +188,7 @@ impl Affine {
         match &self.dynamics {
             Dynamics::Position(reference) => reference.is_affine(),
             Dynamics::PositionVelocity(reference) => reference.is_affine(),
+            Dynamics::Estimates(reference) => reference.is_affine(),
         }
     }
 

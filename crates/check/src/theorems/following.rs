@@ -1,4 +1,4 @@
-//! Following a leader: Theorems 8 and 9, Remark 12.
+//! Following a leader: Theorems 8 and 9, Remark 12, and an observer of the leader.
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
@@ -22,9 +22,9 @@ const LOOKS: u32 = 20_000;
 enum Over {
     /// A fixed graph without delay, as the paper has it; or what neither the paper nor our derivations speak about.
     Fixed,
-    /// (110) over graphs that take turns.
+    /// (110), or an observer, over graphs that take turns.
     Turns,
-    /// (110) over a fixed graph whose links delay.
+    /// (110), or an observer, over a fixed graph whose links delay.
     Late,
 }
 
@@ -32,7 +32,8 @@ impl Over {
     fn of(setup: &Setup, design: FollowingDesign) -> Over {
         let turns = setup.network.schedule.constant_graph().is_none();
         match design {
-            FollowingDesign::Continuous => match (turns, is_late(setup)) {
+            // With estimates in the place of what is measured an observer is (110) with s = 0.
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => match (turns, is_late(setup)) {
                 (true, false) => Over::Turns,
                 (false, true) => Over::Late,
                 (false, false) | (true, true) => Over::Fixed,
@@ -56,9 +57,12 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
         FollowingDesign::Differentiable => Theorem::Theorem9,
         FollowingDesign::WithoutAcceleration => Theorem::Remark12,
         FollowingDesign::Swarm { .. } => Theorem::Swarm,
+        FollowingDesign::Observer { .. } => Theorem::LeaderObserver,
     };
     let torque = match following.design {
-        FollowingDesign::Continuous => "the torque is as smooth as the value of the sign that is chosen",
+        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
+            "the torque is as smooth as the value of the sign that is chosen"
+        }
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
             "the torque is differentiable"
         }
@@ -71,8 +75,8 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     });
     match following.design {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
-        // (110) is integrated as it stands, whatever its weights do. How far it stays behind is known of constant ones.
-        FollowingDesign::Continuous => {
+        // It is integrated as it stands, whatever its weights do. How far it stays behind is known of constant ones.
+        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
             hypotheses.extend((over == Over::Late).then(|| constant_weights(setup)));
             hypotheses.push(stable(following));
         }
@@ -107,12 +111,13 @@ fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
     Hypothesis::new(Id::BoundedLeader, evidence)
 }
 
-/// How far all roots of p + α, or of p² + β p + α, are from the axis at least, 1/s. Of two real roots the smaller one is α over the larger, which is below β; a pair has the real part
+/// How far all roots of p + α, of (p + α)(p + κ) or of p² + β p + α are from the axis at least, 1/s. Of two real roots the smaller one is α over the larger, which is below β; a pair has the real part
 /// −β/2.
 pub(crate) fn slowest_per_s(following: &Following) -> f64 {
     let (alpha, beta) = (following.alpha, following.beta);
     match following.design {
         FollowingDesign::Continuous => alpha,
+        FollowingDesign::Observer { kappa } => alpha.min(kappa),
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
             (0.5 * beta).min(alpha / beta) * (1.0 - 1e-12)
         }
@@ -158,7 +163,7 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
     };
     let swing = swing(following);
     let alpha_per_s = match following.design {
-        FollowingDesign::Continuous => following.alpha,
+        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => following.alpha,
         // α is the product of the two roots there.
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
             (following.alpha * swing).sqrt()
@@ -174,7 +179,7 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
 /// 1 + b/a for roots −a ± b i, else one.
 fn swing(following: &Following) -> f64 {
     match following.design {
-        FollowingDesign::Continuous => 1.0,
+        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => 1.0,
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
             let half = 0.5 * following.beta;
             let turns = following.alpha / (half * half) - 1.0;

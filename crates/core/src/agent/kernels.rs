@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::hold::{Hold, Since};
 use super::{Applied, Held, Inbox, Out};
 use crate::law::{SlotineLi, SlotineLiOutput};
-use crate::reference::{Derived, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
+use crate::reference::{Derived, Exchange, Heard, Measured, Reference, ReferenceOut, SlidingInputs};
 use crate::robot::{Lagrangian, TwoVelocity};
 use crate::{Kernel, LengthError};
 
@@ -68,7 +68,12 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         }
         let Some(h) = passed_s else { return Ok(()) };
         let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();
-        let own = [&held.q[..], &held.dq, &out.told];
+        let [first, second] = if <F::Exchange as Exchange>::MEASURED {
+            [&held.q[..], &held.dq[..]]
+        } else {
+            [&state[..m], &state[m..2 * m]]
+        };
+        let own = [first, second, &out.told[..]];
         let inputs = SlidingInputs { own, degree: &held.degree, sums: [channel(0), channel(1), channel(2)] };
         sliding.argument(m, inputs, &mut out.e)?;
         let selection = state.len() - m;

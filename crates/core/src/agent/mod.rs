@@ -61,7 +61,7 @@ use kernels::{Learn, Refer, Track};
 /// What an agent knows of its neighbours at one instant: the sums that a linear design needs.
 ///
 /// A message of an agent with m axes is [`Exchange::CHANNELS`] · m numbers: its positions, then its velocities if they are
-/// sent, then what the sender's [`Agent::told`] was at the sample before, if its design tells anything.
+/// sent, or what [`Agent::tell`] makes of them; then what the sender's [`Agent::told`] was at the sample before, if its design tells anything.
 #[derive(Clone, Copy, Debug)]
 pub struct Inbox<'a> {
     /// Σ_j w_ij.
@@ -244,6 +244,27 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     /// What is transmitted at the next sample besides what is measured then: q̈ for (119), ż for (122), else nothing.
     pub fn told(&self) -> &[f64] {
         &self.out.told
+    }
+
+    /// Turns q and q̇ as they are measured, an entry per axis each, into a message. Where messages are not measured it becomes the
+    /// first blocks of the reference state as of the last sample; before the first, where the estimates will start:
+    /// q and what is wanted of z(0).
+    ///
+    /// # Errors
+    /// [`LengthError`] when it has not as many entries as a message that is not measured.
+    pub fn tell(&self, message: &mut [f64]) -> Result<(), LengthError> {
+        if <F::Exchange as Exchange>::MEASURED {
+            return Ok(());
+        }
+        let m = self.held.q.len();
+        let told = <F::Exchange as Exchange>::CHANNELS * m;
+        LengthError::check("message", told, message.len())?;
+        if self.started {
+            message.copy_from_slice(&self.state[..told]);
+        } else if let Some(wanted) = self.wanted.first() {
+            message[m..].copy_from_slice(wanted);
+        }
+        Ok(())
     }
 
     /// Sets the state of the reference dynamics.

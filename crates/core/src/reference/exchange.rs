@@ -4,11 +4,15 @@ use crate::{LengthError, Scalar};
 
 /// What an agent transmits and what the sums over its neighbours look like on the receiving side.
 ///
-/// Agents transmit raw measurements; the receiver applies its own coefficients. A sender's message of m axes has
-/// [`Exchange::CHANNELS`] · m numbers.
+/// Agents transmit raw measurements, or blocks of their reference state; the receiver applies its own coefficients. A sender's
+/// message of m axes has [`Exchange::CHANNELS`] · m numbers.
 pub trait Exchange: Copy + Send + Sync + 'static {
     /// How many vectors of ℝᵐ a message holds.
     const CHANNELS: usize;
+
+    /// Whether a message is measured: q, or q and q̇. Otherwise it is the first [`Exchange::CHANNELS`] blocks of the sender's
+    /// reference state.
+    const MEASURED: bool;
 
     /// Σ_j w_ij · message_j(t − T_ij), one column per axis and channel.
     type Sums<'a>: Copy + core::fmt::Debug;
@@ -113,6 +117,7 @@ pub struct EstimateSums<'a> {
 
 impl Exchange for Position {
     const CHANNELS: usize = 1;
+    const MEASURED: bool = true;
     type Sums<'a> = PositionSums<'a>;
 
     #[inline(always)]
@@ -138,6 +143,7 @@ impl Exchange for Position {
 
 impl Exchange for PositionVelocity {
     const CHANNELS: usize = 2;
+    const MEASURED: bool = true;
     type Sums<'a> = PositionVelocitySums<'a>;
 
     #[inline(always)]
@@ -165,6 +171,7 @@ impl Exchange for PositionVelocity {
 
 impl Exchange for Estimates {
     const CHANNELS: usize = 2;
+    const MEASURED: bool = false;
     type Sums<'a> = EstimateSums<'a>;
 
     #[inline(always)]

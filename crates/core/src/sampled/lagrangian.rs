@@ -49,15 +49,15 @@ where
             StartState::FirstSample { wanted } => agent.start_with(wanted.clone())?,
         }
         let outputs = [(Signal::Position, m), (Signal::Velocity, m)];
-        let measured = F::Exchange::CHANNELS * m;
+        let sent = F::Exchange::CHANNELS * m;
         let mut sampled = SampledAgent {
             axes: m,
-            measured,
+            sent,
             derivatives: self.reference.derivatives(),
             sliding: self.reference.sliding().is_some(),
             adapts,
             inputs: [(Signal::Torque, m)],
-            sensing: Sensing::new(&outputs, measured, |_| true, recipe.filter.as_ref())?,
+            sensing: Sensing::new(&outputs, sent, |_| true, recipe.filter.as_ref())?,
             standing: Standing::new(recipe.safe.clone(), m),
             state: vec![0.0; reference + if adapts { agent.estimate().len() } else { 0 }],
             agent,
@@ -71,8 +71,8 @@ where
 struct SampledAgent<R: Lagrangian<f64>, F> {
     agent: Agent<R, F>,
     axes: usize,
-    /// Numbers of a message that are measured.
-    measured: usize,
+    /// Numbers of a message that are measured, or blocks of the reference state.
+    sent: usize,
     /// Blocks of the state that are z, ż, …; whether the last is a sign; whether estimates follow.
     derivatives: usize,
     sliding: bool,
@@ -119,13 +119,14 @@ where
     }
 
     fn message_len(&self) -> usize {
-        self.measured + self.agent.told().len()
+        self.sent + self.agent.told().len()
     }
 
     fn message(&self, now_s: f64, measured: &[f64], out: &mut [f64]) -> Result<(), StepError> {
         LengthError::check("message", self.message_len(), out.len())?;
-        let (own, computed) = out.split_at_mut(self.measured);
+        let (own, computed) = out.split_at_mut(self.sent);
         self.sensing.head(now_s, measured, own)?;
+        self.agent.tell(own)?;
         computed.copy_from_slice(self.agent.told());
         Ok(())
     }
@@ -160,6 +161,10 @@ where
             Signal::Reference(1) => Some(last.dz),
             Signal::Reference(r) if usize::from(r) < self.derivatives => {
                 reference.get(usize::from(r) * m..(usize::from(r) + 1) * m)
+            }
+            Signal::LeaderPosition | Signal::LeaderVelocity if !F::Exchange::MEASURED => {
+                let first = if signal == Signal::LeaderPosition { 0 } else { m };
+                reference.get(first..first + m)
             }
             Signal::Selection if self.sliding => reference.get(reference.len().saturating_sub(m)..),
             Signal::TrackingError => Some(last.s),

@@ -78,6 +78,9 @@ pub enum SystemProblem {
     /// A β for a design that has none.
     #[error("`continuous` has no β")]
     BetaUnused,
+    /// α or β for a design that has roots.
+    #[error("`observer` is given by its roots")]
+    RootsAlone,
     /// As many roots as the design has.
     #[error("`roots_per_s` has {}, but this design needs {need}", count(*.found, "root"))]
     LeaderRoots {
@@ -147,8 +150,12 @@ impl SystemProblem {
             SystemProblem::RowsTwice => "leave one of them out".into(),
             SystemProblem::NoSamples => "write `[control]` with `sample_hz`, or `record_at.times_s`".into(),
             SystemProblem::BetaUnused => "leave it out: (110) has α alone".into(),
+            SystemProblem::RootsAlone => {
+                "write `roots_per_s = [1.0, 2.0]`: the first for the estimates, the second for the robots".into()
+            }
             SystemProblem::LeaderRoots { .. } => {
-                "`continuous` has one root, which is real, the other designs have two, or a pair of complex ones".into()
+                "`continuous` has one root, which is real, `observer` has two real ones, the other designs have two, or a pair of complex ones"
+                    .into()
             }
             SystemProblem::TargetValue { .. } => {
                 "roots, logarithms and quotients need arguments that stay where they have values".into()

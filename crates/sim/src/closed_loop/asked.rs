@@ -26,7 +26,8 @@ pub(super) fn argument<X: Transmits>(
     let channels = X::CHANNELS;
     LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
     LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
-    let own = [&x[..block], &x[l.dq..l.reference], told[0]];
+    let first = if X::MEASURED { 0 } else { l.reference };
+    let own = [&x[first..first + block], &x[first + block..first + 2 * block], told[0]];
     let sums = [&inputs.sums[..block], &inputs.sums[block..2 * block], told[1]];
     sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
 }
@@ -46,10 +47,12 @@ pub(super) fn add_sign_terms_now<X: Transmits>(
         return Ok(());
     }
     argument(reference, l, x, inputs, [&[], &[]], &mut layer.selection)?;
+    // The block that leans on the sign stands before that of the sign.
+    let leaning = d_state.len() - 2 * l.block();
     for (k, selection) in layer.selection.iter_mut().enumerate() {
         *selection = saturated(*selection, layer.width);
         dz[k] -= sliding.gamma * *selection;
-        d_state[k] = dz[k];
+        d_state[leaning + k] -= sliding.gamma * *selection;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ use std::ops::Range;
 use forwardstep_core::agent::Clipped;
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::plant::total;
-use forwardstep_core::reference::{Position, PositionVelocity};
+use forwardstep_core::reference::{Estimates, Position, PositionVelocity};
 use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
@@ -86,6 +86,7 @@ impl<'a> ClosedLoop<'a> {
         match setup.exchange {
             Exchange::Position => Self::with_exchange::<Position>(setup),
             Exchange::PositionVelocity => Self::with_exchange::<PositionVelocity>(setup),
+            Exchange::Estimates => Self::with_exchange::<Estimates>(setup),
         }
     }
 
@@ -120,9 +121,10 @@ impl<'a> ClosedLoop<'a> {
             external = outside.end;
             let first = closed_loop.start.len();
             columns.append_start(&setup.agents, &mut closed_loop.start);
+            let told = first + columns.message();
             for (i, &agent) in group.iter().enumerate() {
                 closed_loop.ports[agent] =
-                    Port { state: first + i, entry: placed * entries + i, degree: placed + i, stride: n };
+                    Port { state: told + i, entry: placed * entries + i, degree: placed + i, stride: n };
             }
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),
@@ -148,7 +150,11 @@ impl<'a> ClosedLoop<'a> {
             });
         }
         closed_loop.leader = setup.leader().map(|vertex| closed_loop.ports[vertex]);
-        let heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
+        let mut heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
+        if !X::MEASURED {
+            // What is told is a part of what has just been started.
+            heard = closed_loop.heard_at_start(setup, X::CHANNELS * axes);
+        }
         if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
             let places = closed_loop.places();
             let states = closed_loop.start.len();
@@ -175,6 +181,19 @@ impl<'a> ClosedLoop<'a> {
     /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
     /// Of every message as many entries are heard as flow.
     fn start_references(&mut self, setup: &Setup, flowing: usize) -> Result<Heard, SetupError> {
+        let Heard { degree, sums } = self.heard_at_start(setup, flowing);
+        for block in &mut self.blocks {
+            let (degree, sums) = (&degree[block.degree.clone()], &sums[block.sums.clone()]);
+            block
+                .columns
+                .start(&setup.agents, &mut self.start[block.state.clone()], degree, sums)
+                .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
+        }
+        Ok(Heard { degree, sums })
+    }
+
+    /// What everybody hears if the messages are those of the start.
+    fn heard_at_start(&self, setup: &Setup, flowing: usize) -> Heard {
         let graph = setup.network.schedule.segments().next().map_or(0, |segment| segment.graph);
         let mut degree = vec![0.0; self.ports.len()];
         let mut sums = vec![0.0; self.ports.len() * self.entries];
@@ -189,14 +208,7 @@ impl<'a> ClosedLoop<'a> {
                 sums[to.entry + c * to.stride] += weight * taken;
             }
         }
-        for block in &mut self.blocks {
-            let (degree, sums) = (&degree[block.degree.clone()], &sums[block.sums.clone()]);
-            block
-                .columns
-                .start(&setup.agents, &mut self.start[block.state.clone()], degree, sums)
-                .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
-        }
-        Ok(Heard { degree, sums })
+        Heard { degree, sums }
     }
 
     /// Where the columns of every vertex stand that have an entry per axis.

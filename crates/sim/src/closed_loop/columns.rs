@@ -29,6 +29,8 @@ pub(crate) struct Inputs<'a> {
 pub(crate) trait Columns {
     /// Numbers of state.
     fn state_len(&self) -> usize;
+    /// Where in its block the first column of what it tells stands; the others follow.
+    fn message(&self) -> usize;
     /// Appends the initial state to `x`, but for what depends on the first messages.
     fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>);
     /// Completes the block `x` of the initial state with what is heard at t = 0: z(0), ż(0), … become what is wanted.

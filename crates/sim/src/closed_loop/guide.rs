@@ -49,6 +49,11 @@ impl Columns for Guide {
         2 * self.pieces.axes()
     }
 
+    // Its state begins with what is measured.
+    fn message(&self) -> usize {
+        0
+    }
+
     fn append_start(&self, _: &[AgentSetup], x: &mut Vec<f64>) {
         let mut jets = self.jets.clone();
         self.pieces.jets(0.0, &mut jets);

@@ -171,6 +171,9 @@ where
         r.q.iter().copied().for_each(&mut put);
         w.dq.iter().chain(&w.z).chain(&w.dz).for_each(|v| put(v.lane(lane)));
         (2 * l.m..self.reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        if !X::MEASURED {
+            (0..2 * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        }
         if self.reference.sliding().is_some() {
             let held = &x[l.theta_hat - l.block()..l.theta_hat];
             let selection = self.layer.as_ref().map_or(held, |layer| &layer.selection);
@@ -213,6 +216,10 @@ where
 {
     fn state_len(&self) -> usize {
         self.robots.layout.len
+    }
+
+    fn message(&self) -> usize {
+        if X::MEASURED { 0 } else { self.robots.layout.reference }
     }
 
     fn append_start(&self, all: &[AgentSetup], x: &mut Vec<f64>) {
@@ -376,6 +383,10 @@ where
         for r in 0..self.reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
         }
+        if !X::MEASURED {
+            axes(Signal::LeaderPosition, l.m);
+            axes(Signal::LeaderVelocity, l.m);
+        }
         if self.reference.sliding().is_some() {
             axes(Signal::Selection, l.m);
         }
@@ -407,6 +418,9 @@ where
             (Signal::Estimate, column(l.theta_hat))
         } else if self.selection().is_some_and(|selection| state >= selection.start) {
             (Signal::Selection, column(l.theta_hat - l.block()))
+        } else if state >= l.reference && !X::MEASURED {
+            let column = column(l.reference);
+            (if column < l.m { Signal::LeaderPosition } else { Signal::LeaderVelocity }, column % l.m)
         } else if state >= l.reference {
             (Signal::Reference((column(l.reference) / l.m) as u8), column(l.reference) % l.m)
         } else if state >= l.dq {

@@ -1,7 +1,7 @@
 //! What reference dynamics from outside say of themselves, tried at random states.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{Heard, Measured, Position, PositionVelocity, ReferenceOut};
+use forwardstep_core::reference::{Estimates, Heard, Measured, Position, PositionVelocity, ReferenceOut};
 
 use super::assembly::Assembly;
 use super::error::SetupError;
@@ -24,6 +24,7 @@ pub fn probe_reference(setup: &Setup) -> Result<Probe, SetupError> {
     match setup.exchange {
         Exchange::Position => probe::<Position>(setup),
         Exchange::PositionVelocity => probe::<PositionVelocity>(setup),
+        Exchange::Estimates => probe::<Estimates>(setup),
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::reference::{
-    Exchange, Heard, Measured, Position, PositionVelocity, Reference, ReferenceOut, Sliding,
+    Estimates, Exchange, Heard, Measured, Position, PositionVelocity, Reference, ReferenceOut, Sliding,
 };
 use forwardstep_core::{Kernel, LengthError, dispatch};
 
@@ -31,6 +31,12 @@ impl Transmits for Position {
 impl Transmits for PositionVelocity {
     fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
         if let Dynamics::PositionVelocity(reference) = dynamics { Some(reference) } else { None }
+    }
+}
+
+impl Transmits for Estimates {
+    fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
+        if let Dynamics::Estimates(reference) = dynamics { Some(reference) } else { None }
     }
 }
 
@@ -65,6 +71,7 @@ pub fn reference_dynamics(setup: &Setup, agent: usize) -> Result<Dynamics, Setup
     Ok(match setup.exchange {
         setup::Exchange::Position => Dynamics::Position(reference(&assembly)?),
         setup::Exchange::PositionVelocity => Dynamics::PositionVelocity(reference(&assembly)?),
+        setup::Exchange::Estimates => Dynamics::Estimates(reference(&assembly)?),
     })
 }
 

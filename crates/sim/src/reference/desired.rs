@@ -97,9 +97,13 @@ impl Desired {
         self.follows_target && self.protocol.is_some()
     }
 
+    fn hears_velocities(&self) -> bool {
+        self.heard.len() > 1
+    }
+
     /// What is exchanged for it.
     pub fn exchange(&self) -> Exchange {
-        if self.heard.len() > 1 { Exchange::PositionVelocity } else { Exchange::Position }
+        if self.hears_velocities() { Exchange::PositionVelocity } else { Exchange::Position }
     }
 
     /// γ, B and c with numbers.
@@ -139,10 +143,8 @@ impl ReferenceDynamics for Desired {
     }
 
     fn interface(&self) -> ReferenceInterface {
-        let exchanges: &[Exchange] = match self.exchange() {
-            Exchange::Position => &[Exchange::Position],
-            Exchange::PositionVelocity => &[Exchange::PositionVelocity],
-        };
+        let exchanges: &[Exchange] =
+            if self.hears_velocities() { &[Exchange::PositionVelocity] } else { &[Exchange::Position] };
         ReferenceInterface {
             family: if self.follows_target { ReferenceFamily::DesiredTarget } else { ReferenceFamily::Desired },
             exchanges,
@@ -209,11 +211,10 @@ impl ReferenceDynamics for Desired {
     fn dynamics(&self, assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> {
         let (agents, own) = (assembly.agents().len(), assembly.agent());
         let dynamics = self.dynamics_of(&own.name)?;
-        match self.exchange() {
-            Exchange::Position => reference::Desired::<Position>::new(agents, dynamics).map(Dynamics::position),
-            Exchange::PositionVelocity => {
-                reference::Desired::<PositionVelocity>::new(agents, dynamics).map(Dynamics::position_velocity)
-            }
+        if self.hears_velocities() {
+            reference::Desired::<PositionVelocity>::new(agents, dynamics).map(Dynamics::position_velocity)
+        } else {
+            reference::Desired::<Position>::new(agents, dynamics).map(Dynamics::position)
         }
         .ok_or_else(|| assembly.wrong_reference())
     }

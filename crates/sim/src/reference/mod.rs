@@ -20,7 +20,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use forwardstep_core::reference::{Position, PositionVelocity, Reference};
+use forwardstep_core::reference::{Estimates, Position, PositionVelocity, Reference};
 
 use crate::closed_loop::{Assembly, SetupError};
 use crate::setup::{AgentSetup, Exchange, Setup};
@@ -159,6 +159,8 @@ pub enum Dynamics {
     Position(Arc<dyn Reference<Exchange = Position>>),
     /// Positions and velocities.
     PositionVelocity(Arc<dyn Reference<Exchange = PositionVelocity>>),
+    /// Where they believe their leader to be, and how fast.
+    Estimates(Arc<dyn Reference<Exchange = Estimates>>),
 }
 
 impl Dynamics {
@@ -170,5 +172,10 @@ impl Dynamics {
     /// Of agents that exchange positions and velocities.
     pub fn position_velocity(reference: impl Reference<Exchange = PositionVelocity>) -> Dynamics {
         Dynamics::PositionVelocity(Arc::new(reference))
+    }
+
+    /// Of agents that exchange estimates of their leader.
+    pub fn estimates(reference: impl Reference<Exchange = Estimates>) -> Dynamics {
+        Dynamics::Estimates(Arc::new(reference))
     }
 }

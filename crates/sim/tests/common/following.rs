@@ -17,8 +17,19 @@ use forwardstep_sim::{
 use super::axes;
 
 pub const SWARM: FollowingDesign = FollowingDesign::Swarm { coupling: 12.0 };
-pub const DESIGNS: [FollowingDesign; 4] =
-    [FollowingDesign::Continuous, FollowingDesign::Differentiable, FollowingDesign::WithoutAcceleration, SWARM];
+pub const OBSERVER: FollowingDesign = FollowingDesign::Observer { kappa: 2.5 };
+pub const DESIGNS: [FollowingDesign; 5] = [
+    FollowingDesign::Continuous,
+    FollowingDesign::Differentiable,
+    FollowingDesign::WithoutAcceleration,
+    SWARM,
+    OBSERVER,
+];
+
+/// Whether ξ̂ stands in the place of ξ.
+pub fn observes(design: FollowingDesign) -> bool {
+    matches!(design, FollowingDesign::Observer { .. })
+}
 
 pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
     let links = PlanarLinks::uniform([2.0 + 0.2 * index as f64, 1.5], [1.0, 0.8]);
@@ -66,7 +77,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
     Setup {
         agents: starts.iter().enumerate().map(|(k, q)| arm(k + 1, *q, estimate)).collect(),
         reference: Arc::new(following),
-        exchange: Exchange::PositionVelocity,
+        exchange: if observes(design) { Exchange::Estimates } else { Exchange::PositionVelocity },
         network: Network {
             agents: 5,
             schedule: Schedule::fixed(vec![
@@ -116,7 +127,7 @@ pub fn masses(design: FollowingDesign) -> Setup {
         agent.robot.theta_names.truncate(1);
         agent.robot.axes.truncate(1);
         agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
-        let free = if design == FollowingDesign::Continuous { 1 } else { 2 };
+        let free = if design == FollowingDesign::Continuous || observes(design) { 1 } else { 2 };
         let reference = vec![vec![z[k]], vec![dz[k]]][..free].to_vec();
         agent.start = Start { q: vec![q[k]], dq: vec![dq[k]], rest: Vec::new(), reference };
     }

@@ -156,6 +156,7 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("following-119", arms(FollowingDesign::Differentiable, Choice::Implicit)),
         ("following-122", arms(FollowingDesign::WithoutAcceleration, Choice::Implicit)),
         ("following-as-a-swarm", arms(following::SWARM, Choice::Explicit)),
+        ("following-by-an-observer", arms(following::OBSERVER, Choice::Implicit)),
         (
             "following-110-an-agent",
             following::led_by_agent(arms(FollowingDesign::Continuous, Choice::Implicit), &[2.0, 1.5], 1),

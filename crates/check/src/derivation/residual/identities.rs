@@ -11,6 +11,7 @@ use super::super::formula::{Formula, Sign};
 use super::super::laplacian::chain;
 use super::super::lower::Lower;
 use super::super::notation::Notation;
+use super::super::observer::Observer;
 use super::super::places::Places;
 use super::super::polynomial::Polynomial;
 use super::super::reduction::{Reduced, Variable};
@@ -153,6 +154,9 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             case.dynamics().map_or_else(Vec::new, |dynamics| continuous(case, &dynamics, notation))
         }
         (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
+            if let Some(observer) = case.observer() {
+                return observed(case, &observer, notation);
+            }
             let found = case.dynamics().map_or_else(Vec::new, |dynamics| linear(case, &dynamics, notation));
             in_order(found)
         }
@@ -352,6 +356,25 @@ fn continuous(case: &Case<'_>, dynamics: &Dynamics, notation: Notation) -> Vec<I
 /// ω, which follows z where there is one.
 fn turning(error: Combination) -> Frame {
     Frame { plant: 1, error, followed: None, letters: [Letter::Position, Letter::Error], integrated: None }
+}
+
+/// An observer of the leader, and a robot that is led to its estimate.
+fn observed(case: &Case<'_>, observer: &Observer, notation: Notation) -> Vec<Identity> {
+    let frame = Frame { plant: 2, ..turning(Combination::of(Quantity::own(Letter::Error), Polynomial::one())) };
+    let mut list = List::new(notation, frame);
+    let (z, places) = (Quantity::own(Letter::Reference), Places::of(case, 1));
+    let subject = Subject::ReferenceDynamics;
+    list.equation(subject, (Quantity::own(Letter::Observed), 2), &observer.observer(), "");
+    list.equation(subject, (z, 0), &observer.reference(), "");
+    list.equation(subject, (z, 1), &observer.rate(), "");
+    let [left, right] = observer.distance();
+    let formula = Formula::equal(list.notation.form(&left), list.notation.form(&right));
+    list.equal(Subject::Cascade, [&left, &right], (formula, ""));
+    if let Some(lower) = case.lower() {
+        list.lower(case, &lower, [places.plant, places.law, ""]);
+    }
+    list.adaptation(case);
+    in_order(list.found)
 }
 
 /// (94), (97)–(107).

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use forwardstep_core::controller::{Jet, JetsBuffer};
+use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Column, Moment, Signal, StateRate};
 
@@ -153,7 +154,8 @@ impl<'c, 'a> At<'c, 'a> {
         let found = self.chained((0..most).map(Signal::Reference), k);
         // z that is no state is recorded.
         match (&self.case.led, &self.case.step, k) {
-            (Led::Backstepping, _, 0 | 1) | (_, Step::TipVelocity(_), 0 | 1) => {
+            (Led::Backstepping | Led::Leader(FollowingDesign::Observer { .. }, _), _, 0 | 1)
+            | (_, Step::TipVelocity(_), 0 | 1) => {
                 self.recorded(Signal::Reference(k as u8)).map(<[f64]>::to_vec).ok_or(Missing::Derivative)
             }
             _ => found,
@@ -232,6 +234,9 @@ impl<'c, 'a> At<'c, 'a> {
             (Letter::Error, Vertex::Own) => self.error(k),
             (Letter::Filter, Vertex::Own) => self.filter(k),
             (Letter::Target, Vertex::Own) => self.jet(self.case.setup.agents[self.moment.agent].target.as_ref(), k),
+            (Letter::Observed, Vertex::Own) => {
+                self.chained([Signal::LeaderPosition, Signal::LeaderVelocity].into_iter(), k).map(exact)
+            }
             (Letter::Integral, Vertex::Own) if k < 2 => {
                 self.state(Signal::Reference(1), k == 1).map(exact).ok_or(Missing::Derivative)
             }
@@ -252,6 +257,7 @@ impl<'c, 'a> At<'c, 'a> {
         };
         match (quantity.letter, quantity.vertex, k) {
             (Letter::Position, Vertex::Neighbour, k) => heard(k).or_else(|_| self.at_once(k)),
+            (Letter::Observed, Vertex::Neighbour, k) => heard(k),
             (Letter::Coupled, _, 0) => {
                 let mut sum = Vector::new();
                 add(&mut sum, degree, &exact(self.position(0)?));

@@ -67,7 +67,7 @@ fn of(subject: &Subject) -> String {
             format!("the derivatives of the offset of {} up to the {}", names(agents), ordinal(*derivatives))
         }
         Subject::Drive(design) => match design {
-            FollowingDesign::Continuous => "ddq_0 + α dq_0",
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => "ddq_0 + α dq_0",
             FollowingDesign::Swarm { .. } => "dddq_0",
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => "dddq_0 + β ddq_0 + α dq_0",
         }

@@ -211,7 +211,8 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
 fn choice(exchange: Exchange) -> ExchangeChoice {
     match exchange {
         Exchange::Position => ExchangeChoice::Position,
-        Exchange::PositionVelocity => ExchangeChoice::PositionVelocity,
+        // Estimates are told of leaders alone, which have no choice.
+        Exchange::PositionVelocity | Exchange::Estimates => ExchangeChoice::PositionVelocity,
     }
 }
 

@@ -113,7 +113,8 @@ impl Template {
         let roots = commented(&format!("roots_per_s = [{}]", roots.join(", ")), "as many as the order, all positive");
         let has_choice = matches!(self.robot.task, TaskTemplate::Agree { exchange: None, .. });
         let (word, other) = match self.exchange {
-            Exchange::PositionVelocity => ("position_velocity", "or \"position\""),
+            // Estimates are told of leaders alone.
+            Exchange::PositionVelocity | Exchange::Estimates => ("position_velocity", "or \"position\""),
             Exchange::Position if has_choice => ("position", "or \"position_velocity\""),
             Exchange::Position => ("position", "all that this law needs of others"),
         };

@@ -26,6 +26,11 @@ impl<C: Controller> Columns for Solo<C> {
         self.layout.controller_end() + usize::from(self.layout.balance)
     }
 
+    // Its state begins with what is measured.
+    fn message(&self) -> usize {
+        0
+    }
+
     fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>) {
         let first = x.len();
         let start = &agents[self.agent].start;

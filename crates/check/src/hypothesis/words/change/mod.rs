@@ -52,7 +52,9 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
         GraphEvidence::DeclaredPhases { .. } | GraphEvidence::RefutedSwitching { .. } => SHIPPED.into(),
         GraphEvidence::VaryingWeight => "weights that are constant".into(),
         GraphEvidence::Switches { exchange, .. } => match exchange {
-            Exchange::PositionVelocity => "one graph, or `reference.consensus` with two roots, which is (a1)".into(),
+            Exchange::PositionVelocity | Exchange::Estimates => {
+                "one graph, or `reference.consensus` with two roots, which is (a1)".into()
+            }
             Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
         },
         GraphEvidence::InEveryGraph { .. } => "graphs that repeat".into(),
@@ -61,7 +63,9 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
             format!("in phase {phase} an edge to {to} from the leader, or from an agent that hears it")
         }
         GraphEvidence::SwitchesUnderLeader { design } => match design {
-            FollowingDesign::Continuous => "one graph, or links without delay".into(),
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
+                "one graph, or links without delay".into()
+            }
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
                 "one graph, or the design `continuous`, which is (110)".into()
             }

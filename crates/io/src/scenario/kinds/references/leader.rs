@@ -22,22 +22,24 @@ const SIGN_EVERY_S: f64 = 1e-3;
 pub struct LeaderReferenceFile {
     /// Which of the designs.
     pub design: At<LeaderDesignFile>,
-    /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁, or a pair
+    /// The positive numbers κ in 1/s: one for `continuous`, α = κ₀; for `observer` α = κ₀, with which estimates come to the leader, and
+    /// κ₁, with which a robot comes to its estimate; two for the others, β = κ₀ + κ₁ and α = κ₀ κ₁, or a pair
     /// of complex roots, as `{ real = 0.5, imaginary = 2 }`.
-    /// Needed unless α and β are given.
+    /// Needed unless α and β are given, and for `observer`.
     #[schemars(with = "Option<Vec<RootFile>>", length(min = 1, max = 2))]
     pub roots_per_s: Option<RootsFile>,
     /// α as the paper writes it, in the place of roots: in 1/s for `continuous`, in 1/s² for the others, which need β too. For `swarm`,
-    /// which the paper does not print, p² + β p + α should have real roots, β² ≥ 4 α: what it promises is derived for these.
+    /// which the paper does not print, p² + β p + α should have real roots, β² ≥ 4 α: what it promises is derived for these. Not for
+    /// `observer`.
     #[schemars(with = "Option<Positive>")]
     pub alpha: Option<At<f64>>,
-    /// β as the paper writes it, in 1/s; not for `continuous`, which has none.
+    /// β as the paper writes it, in 1/s; not for `continuous` and `observer`, which have none.
     #[schemars(with = "Option<Positive>")]
     pub beta: Option<At<f64>>,
     /// The factor k of the differences to neighbours; for `swarm`, which needs it.
     #[schemars(with = "Option<Positive>")]
     pub coupling: Option<At<f64>>,
-    /// The gain γ of the sign, in rad/s² or m/s² for `continuous`, else in rad/s³ or m/s³. It must exceed what drives the
+    /// The gain γ of the sign, in rad/s² or m/s² for `continuous` and `observer`, else in rad/s³ or m/s³. It must exceed what drives the
     /// leader: see what `check` says.
     #[schemars(with = "Positive")]
     pub gain: At<f64>,
@@ -60,6 +62,9 @@ pub enum LeaderDesignFile {
     WithoutAcceleration,
     /// Swarm tracking over an undirected graph, with differences to neighbours only; not printed in the paper.
     Swarm,
+    /// A distributed observer of the leader, for comparison: agents tell where they believe the leader to be and how fast, and each
+    /// follows its own estimate; not from the paper.
+    Observer,
 }
 
 /// How a value of a set-valued sign is chosen.
@@ -87,7 +92,7 @@ impl ReferenceKind for LeaderReferenceFile {
     fn table() -> ReferenceTable {
         ReferenceTable {
             key: "leader",
-            description: "Everybody follows a leader that only some hear: (110), (119) or (122) of the paper.",
+            description: "Everybody follows a leader that only some hear: (110), (119) or (122) of the paper, or a rival.",
             own_roots: false,
         }
     }
@@ -102,6 +107,7 @@ impl ReferenceKind for LeaderReferenceFile {
                 Some(coupling) => FollowingDesign::Swarm { coupling: coupling.value },
                 None => return Err(fault(&self.design, ValueProblem::MissingKey { key: "coupling" })),
             },
+            LeaderDesignFile::Observer => FollowingDesign::Observer { kappa: second_root(self)? },
         };
         if let (Some(coupling), false) = (&self.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
             return Err(fault(coupling, SystemProblem::CouplingUnused));
@@ -118,7 +124,29 @@ impl ReferenceKind for LeaderReferenceFile {
         }
         let period_s = self.sign_period_s.as_ref().map_or(SIGN_EVERY_S, |every| every.value);
         let following = Following { leader, design, alpha, beta, gain: self.gain.value, choice, period_s };
-        Ok(ReferenceRead::new(following, Exchange::PositionVelocity))
+        let exchange = match design {
+            FollowingDesign::Observer { .. } => Exchange::Estimates,
+            FollowingDesign::Continuous
+            | FollowingDesign::Differentiable
+            | FollowingDesign::WithoutAcceleration
+            | FollowingDesign::Swarm { .. } => Exchange::PositionVelocity,
+        };
+        Ok(ReferenceRead::new(following, exchange))
+    }
+}
+
+/// κ of an observer, which has nothing but roots.
+fn second_root(file: &LeaderReferenceFile) -> Result<f64, Fault> {
+    if let Some(stated) = file.alpha.as_ref().or(file.beta.as_ref()) {
+        return Err(fault(stated, SystemProblem::RootsAlone));
+    }
+    let Some(list) = &file.roots_per_s else {
+        return Err(Fault::new(ValueProblem::MissingKey { key: "roots_per_s" }));
+    };
+    let roots = checked_roots(&list.value[..list.value.len().min(3)])?;
+    match (roots.real.as_slice(), roots.pairs.as_slice()) {
+        ([_, kappa], []) => Ok(*kappa),
+        _ => Err(fault(list, SystemProblem::LeaderRoots { found: list.value.len(), need: 2 })),
     }
 }
 
@@ -150,6 +178,8 @@ fn of_roots(list: &RootsFile, design: FollowingDesign) -> Result<(f64, f64), Fau
     match (design, roots.real.as_slice(), roots.pairs.as_slice()) {
         (FollowingDesign::Continuous, [root], []) => Ok((*root, 1.0)),
         (FollowingDesign::Continuous, ..) => wrong(1),
+        (FollowingDesign::Observer { .. }, [alpha, _], []) => Ok((*alpha, 1.0)),
+        (FollowingDesign::Observer { .. }, ..) => wrong(2),
         (_, [first, second], []) => Ok((first * second, first + second)),
         (_, [], [RootPair { real, imaginary }]) => Ok((real * real + imaginary * imaginary, real + real)),
         _ => wrong(2),
