@@ -1,6 +1,7 @@
 //! `[leader]` and `reference.leader`: what is read, and what mistakes get.
 
 use forwardstep_core::reference::Choice;
+use forwardstep_sim::Exchange;
 use forwardstep_sim::leader::{FollowingDesign, Leading};
 use forwardstep_sim::trajectory::Path;
 use miette::Diagnostic;
@@ -59,6 +60,12 @@ fn designs_signs_and_motions_are_read() {
     assert!(one(changed("[1.5]", "[]")).contains(&needs("0 roots", 1)));
     let swarm = two.replace("without_acceleration", "swarm").replace("gain = 3", "gain = 3\ncoupling = 7");
     assert_eq!(read(&swarm).unwrap().setup.following().unwrap().design, FollowingDesign::Swarm { coupling: 7.0 });
+    // α is the first of the two, however large, and κ the second.
+    let observer = changed("\"continuous\"", "\"observer\"").replace("[1.5]", "[3.0, 0.5]");
+    let setup = read(&observer).unwrap().setup;
+    let following = setup.following().unwrap();
+    assert_eq!((following.design, following.alpha), (FollowingDesign::Observer { kappa: 0.5 }, 3.0));
+    assert_eq!(setup.exchange, Exchange::Estimates);
     for (sign, choice) in [
         ("\"implicit\"", Choice::Implicit),
         ("\"explicit\"", Choice::Explicit),
@@ -87,6 +94,27 @@ fn mistakes_about_leaders_are_reported() {
         (changed("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"leader\"]]"), "hears no agent", "turn it round"),
         (changed("[\"sin(t)\"]", "[\"abs(sin(1e5*t))\"]"), "more than 10000 kinks", "shorten the run"),
         (changed("gain = 3", "gain = 0"), "must be positive", ""),
+        (changed("\"continuous\"", "\"observer\""), "1 root, but this design needs 2", "`observer` has two real ones"),
+        (
+            changed("\"continuous\"", "\"observer\"").replace("[1.5]", "[{ real = 1, imaginary = 2 }]"),
+            "needs 2",
+            "`observer` has two real ones",
+        ),
+        (
+            changed("\"continuous\"", "\"observer\"").replace("[1.5]", "[1, 2, 3]"),
+            "3 roots, but this design needs 2",
+            "",
+        ),
+        (
+            changed("\"continuous\"", "\"observer\"").replace("roots_per_s = [1.5]", "alpha = 1"),
+            "given by its roots",
+            "write `roots_per_s = [1.0, 2.0]`",
+        ),
+        (
+            changed("\"continuous\"", "\"observer\"").replace("roots_per_s = [1.5]\n", ""),
+            "`roots_per_s` is missing",
+            "",
+        ),
         (changed("gain = 3", "gain = 3\ncoupling = 1"), "belongs to the design `swarm`", ""),
         (changed("\"continuous\"", "\"swarm\"").replace("[1.5]", "[1, 2]"), "`coupling` is missing", ""),
         (changed("[leader]", "[leader]\nname = \"cart-1\""), "cart-1", ""),
