@@ -6,7 +6,7 @@ const stage = (() => {
   const graphPicture = graphIn(part("graph-picture"));
   const overlay = element("canvas", { className: "over" });
   const tip = element("p", { className: "where" });
-  view.append(...(lighting ? [lighting.canvas] : []), overlay, tip);
+  view.append(...(lighting ? [lighting.layers] : []), overlay, tip);
   const ctx = overlay.getContext("2d");
   const end = whole[1];
   const now = { t: part("stage").dataset.goesOn === "true" ? end : 0, playing: false, since: 0, hovered: null, alone: null, flat: lighting === null };
@@ -47,6 +47,13 @@ const stage = (() => {
   };
   part("view-svg").onclick = () => save("view.svg", new Blob([drawing()], { type: "image/svg+xml" }));
 
+  // Where nothing moves for a moment it is drawn finely.
+  let finely = 0;
+  const lit = () => {
+    clearTimeout(finely);
+    lighting.draw(seen.see, seen.frame, colours);
+    if (!now.playing) finely = setTimeout(() => now.flat || lighting.draw(seen.see, seen.frame, colours, true), 160);
+  };
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -59,9 +66,9 @@ const stage = (() => {
     const see = looking(width, height, frame.nodes);
     // What passes in less than six frames only flickers.
     const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
-    if (!now.flat) lighting.draw(see, frame, colours);
     paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
+    if (!now.flat) lit();
     frames += 1;
     timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
     slider.value = String(now.t);
@@ -86,9 +93,15 @@ const stage = (() => {
   let usual = 16;
   const noticeSlowness = (interval) => {
     usual += 0.1 * (Math.min(100, interval) - usual);
-    if (now.flat || usual < 40) return;
+    if (now.flat || usual < 33) return;
+    // Fewer pixels first.
+    if (lighting.coarser()) {
+      usual = 16;
+      return;
+    }
+    if (usual < 40) return;
     now.flat = true;
-    lighting.canvas.hidden = true;
+    lighting.layers.hidden = true;
     tip.textContent += "; projected, since light and depth are slow here";
   };
   // Whoever asked for less motion sees a picture every half second.
@@ -217,9 +230,9 @@ const stage = (() => {
   const themed = () => ((colours = sceneColours()), ask());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
   let flatBefore = now.flat;
-  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.canvas.hidden = true), (colours = sceneColours()), draw()));
-  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.canvas.hidden = flatBefore), themed()));
-  lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), draw()));
+  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.layers.hidden = flatBefore), themed()));
+  lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.layers.hidden = true), ask()));
   new ResizeObserver(ask).observe(view);
   draw();
   return { go, ask, now, end, drawing, paint: paintAt, watch: (watcher) => void watchers.push(watcher), frames: () => frames, playing: () => now.playing };
@@ -232,6 +245,7 @@ Object.assign(document.getElementById("stage"), {
   go: stage.go,
   time: () => stage.now.t,
   flat: () => stage.now.flat,
+  software: () => lighting?.inSoftware ?? false,
   parts: (t) => frameAt(t).parts,
   names: () => bodies.map((body) => body.name),
   flights: (t) => heardAt(t).edges,
