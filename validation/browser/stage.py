@@ -302,6 +302,40 @@ def speed(browser, name, seconds):
     return rate
 
 
+STROKED = """
+const found = new DOMParser().parseFromString(document.getElementById("stage").drawing(), "image/svg+xml");
+const lines = [...found.querySelectorAll("path")].map((path) => [path.getAttribute("stroke"), path.getAttribute("d").slice(1).split("L").map((p) => p.split(" ").map(Number))]);
+return [lines.filter(([stroke, points]) => stroke && points.length > 2), [...found.querySelectorAll("text")].map((text) => text.textContent)];
+"""
+DRAGGED = """
+const over = document.querySelector("#view .over"), { left, top, width, height } = over.getBoundingClientRect();
+const send = (kind, x) => over.dispatchEvent(new PointerEvent(kind, { pointerId: 1, clientX: left + x, clientY: top + height / 2, isPrimary: true }));
+over.setPointerCapture = () => {};
+const to = arguments[0] + arguments[1] * (width - arguments[0] - arguments[2]);
+send("pointerdown", to - 40), send("pointermove", to), send("pointerup", to);
+"""
+LEFT_PX, RIGHT_PX = 66, 24
+
+
+def chart(browser, name):
+    """What has one coordinate is drawn over time: of each agent what was, up to the clock, and what is to come, from there on."""
+    end = float(value(browser, 'document.getElementById("slider").max'))
+    names = value(browser, "s.names()")
+    wide = value(browser, 'document.getElementById("view").clientWidth') - LEFT_PX - RIGHT_PX
+    for share in [0.25, 0.75]:
+        settled(browser, share * end)
+        lines, texts = browser.run(STROKED)
+        colours = {stroke for stroke, _ in lines}
+        expect(len(lines) == 2 * len(names) and len(colours) == len(names), f"{name}: {len(lines)} curves in {len(colours)} colours for {len(names)} agents")
+        for points in [points for _, points in lines]:
+            met = [points[-1][0], points[0][0]]
+            expect(min(abs(x - LEFT_PX - share * wide) for x in met) < 1, f"{name}: a curve does not meet the clock at {share} of the run but {met}")
+        expect(set(names) <= set(texts), f"{name}: {texts} name not all of {names}")
+    browser.run(DRAGGED, LEFT_PX, 0.4, RIGHT_PX)
+    time.sleep(0.2)
+    expect(abs(value(browser, "s.time()") - 0.4 * end) < 0.01 * end, f"{name}: dragging sets the clock to {value(browser, 's.time()')} of {end}")
+
+
 def pixels(browser, name):
     """Without a graphics card what moves has few pixels, and what stands still has more than the screen."""
     if value(browser, "s.flat()") or not value(browser, "s.software()"):
@@ -351,6 +385,8 @@ def main():
                         drawings(browser, about)
                         plane(browser, about)
                         slides(browser, about)
+                        if name == "strict-feedback":
+                            chart(browser, about)
                     quiet(browser, about)
                     fits(browser, about, 1400)
             # Where there is no graph, its place is taken by the torques.

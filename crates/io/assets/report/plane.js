@@ -40,8 +40,6 @@ const rangeOf = (values, from, to) => {
   for (let i = from; i <= to; i++) if (values[i] != null) [low, high] = [Math.min(low, values[i]), Math.max(high, values[i])];
   return [low, high];
 };
-// The smallest usual distance of ticks that leaves room for their labels.
-const stepOf = (perPixel, room) => increments.find((step) => step / perPixel >= room) ?? 1;
 
 const MOST_POINTS = 200_000;
 const POINTS_EACH = 20;

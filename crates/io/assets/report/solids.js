@@ -14,7 +14,7 @@ const drawsInSoftware = () => {
 
 const lighting = (() => {
   const canvas = element("canvas");
-  if (typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
+  if (charted || typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
   // Asked for here, where a browser without it says nothing. Without a graphics card edges are left as they are, and shapes are coarser.
   const inSoftware = drawsInSoftware();
   const context = canvas.getContext("webgl2", { alpha: true, antialias: !inSoftware });

@@ -200,6 +200,7 @@ const stage = (() => {
     held.set(event.pointerId, here);
     if (Math.hypot(here.x - before.x, here.y - before.y) > 1) moved = true;
     if (held.size === 2) zoom(apart() / Math.max(1, wide));
+    else if (charted) setPlaying(false), go(seen.see.timeAt(here.x - overlay.getBoundingClientRect().left));
     else turn(-0.4 * (here.x - before.x), 0.4 * (here.y - before.y));
   });
   const release = (event) => {
@@ -224,7 +225,7 @@ const stage = (() => {
     view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
-    tip.textContent = railed ? "each on a line of its own" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+    tip.textContent = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());
