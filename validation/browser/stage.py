@@ -336,6 +336,67 @@ def chart(browser, name):
     expect(abs(value(browser, "s.time()") - 0.4 * end) < 0.01 * end, f"{name}: dragging sets the clock to {value(browser, 's.time()')} of {end}")
 
 
+TURNED = """
+const stage = document.getElementById("stage"), card = document.querySelector("[data-plot=path]");
+card.scrollIntoView({ block: "center", behavior: "instant" });
+const frame = card.querySelector(".turns"), [under, over] = frame.querySelectorAll("canvas");
+const shots = () => new Promise((done) => setTimeout(() => done([under, over].map((c) => c.toDataURL()).concat(stage.drawing())), 250));
+const end = document.getElementById("slider").max;
+stage.go(0);
+const first = await shots();
+stage.go(end / 2);
+const later = await shots();
+const press = (key) => frame.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }));
+"dddw".split("").forEach(press);
+const turned = await shots();
+const { left, top } = over.getBoundingClientRect();
+const send = (kind, x, y) => over.dispatchEvent(new PointerEvent(kind, { pointerId: 1, clientX: left + x, clientY: top + y }));
+over.setPointerCapture = () => {};
+send("pointerdown", 100, 100), send("pointermove", 160, 120), send("pointerup", 160, 120);
+const dragged = await shots();
+stage.go(0);
+await shots();
+let pointed = false;
+for (let x = 40; x < over.clientWidth && !pointed; x += 8) for (let y = 10; y < over.clientHeight && !pointed; y += 8) {
+  send("pointermove", x, y);
+  pointed = stage.time() > 0;
+}
+document.getElementById("view-reset").click();
+scrollTo({ top: 0, behavior: "instant" });
+return [first[0] === later[0], first[1] !== later[1], later[0] !== turned[0], later[2] !== turned[2], turned[0] !== dragged[0], pointed];
+"""
+
+
+def numbers(browser, plot):
+    rows = list(csv.DictReader(io.StringIO(value(browser, f"s.table('{plot}')"))))
+    return [{key: float(text) for key, text in row.items() if text} for row in rows]
+
+
+def paths(browser, name):
+    """Paths in space: they follow the clock, turn by keys and by dragging together with the picture, and have the numbers of the run."""
+    still, follows, turns, both, drags, points = waited(browser, TURNED)
+    expect(still and follows, f"{name}: the paths are {'' if still else 'not '}left alone by the clock, dots {'' if follows else 'do not '}follow it")
+    expect(turns and both and drags, f"{name}: paths turn by keys {turns}, with the picture {both}, by dragging {drags}")
+    expect(points, f"{name}: pointing at a path in space moves no clock")
+    rows = numbers(browser, "path")
+    agents = value(browser, "s.names()")
+    if name == "task-space-ur5e":
+        times = value(browser, "s.times()")
+        for row in rows[:: max(1, len(rows) // 20)]:
+            own = value(browser, "s.recorded(arguments[0])[0]".replace("arguments[0]", str(times.index(row["t_s"]))))
+            found = [row[f"{agents[0]}, {'xyz'[axis]}"] for axis in own["coordinates"]]
+            expect(all(abs(a - b) < TOLERANCE_M for a, b in zip(found, own["tip"])), f"{name}: at {row['t_s']} s the path is at {found}, the tip at {own['tip']}")
+        expect(any(key.endswith(", wanted, z") for key in rows[0]), f"{name}: what is wanted has no path among {list(rows[0])}")
+    if name == "formation":
+        for axis in range(3):
+            browser.run('const j = document.getElementById("joint"); j.value = arguments[0]; j.onchange()', str(axis))
+            position = numbers(browser, "position")
+            for agent in agents:
+                for end in [0, -1]:
+                    a, b = rows[end][f"{agent}, {'xyz'[axis]}"], position[end][agent]
+                    expect(abs(a - b) < 1e-4, f"{name}: the path of {agent} has {'xyz'[axis]} = {a} where the plot has {b}")
+
+
 def pixels(browser, name):
     """Without a graphics card what moves has few pixels, and what stands still has more than the screen."""
     if value(browser, "s.flat()") or not value(browser, "s.software()"):
@@ -385,6 +446,10 @@ def main():
                         drawings(browser, about)
                         plane(browser, about)
                         slides(browser, about)
+                        spatial = value(browser, "document.querySelector('[data-plot=path] canvas') !== null")
+                        expect(spatial == (name not in ["five-ships", "strict-feedback"]), f"{about}: paths in space are {'' if spatial else 'not '}drawn")
+                        if spatial and not query:
+                            paths(browser, name)
                         if name == "strict-feedback":
                             chart(browser, about)
                     quiet(browser, about)

@@ -18,13 +18,11 @@ const aim = (nodes) => {
 };
 
 // Axes of the camera and where it stands; as far away as everything needs to be seen.
-const looking = (width, height, nodes) => {
-  if (charted) return chartLooking(width, height, nodes);
-  const [az, el] = [(camera.az * Math.PI) / 180, (camera.el * Math.PI) / 180];
+const lookingFrom = (width, height, { middle, points, extent }, { zoom, ...angles }) => {
+  const [az, el] = [(angles.az * Math.PI) / 180, (angles.el * Math.PI) / 180];
   const back = [Math.cos(el) * Math.cos(az), Math.cos(el) * Math.sin(az), Math.sin(el)];
   const right = [-Math.sin(az), Math.cos(az), 0];
   const upward = cross(back, right);
-  const { middle, points, extent } = aim(nodes);
   const focal = 0.5 * height / Math.tan(0.5 * FIELD);
   // A point at a, b to the side and c towards the camera fits where focal·|a| ≤ room·(distance − c).
   const [wide, high] = [Math.max(40, 0.5 * width - 46), Math.max(40, 0.5 * height - 34)];
@@ -34,7 +32,7 @@ const looking = (width, height, nodes) => {
     const nearer = dot(d, back);
     distance = Math.max(distance, nearer + (focal * Math.abs(dot(d, right))) / wide, nearer + (focal * Math.abs(dot(d, upward))) / high, nearer + 1e-3 * extent);
   }
-  distance = Math.max(distance, 0.4 * extent) / camera.zoom;
+  distance = Math.max(distance, 0.4 * extent) / zoom;
   const eye = add(middle, scaled(back, distance));
   const project = (p) => {
     const d = minusVector(p, eye);
@@ -44,6 +42,12 @@ const looking = (width, height, nodes) => {
     return { x: 0.5 * width + k * dot(d, right), y: 0.5 * height - k * dot(d, upward), k, depth };
   };
   return { project, eye, middle, back, right, upward, distance, width, height };
+};
+
+const looking = (width, height, nodes) => (charted ? chartLooking(width, height, nodes) : lookingFrom(width, height, aim(nodes), camera));
+const turnCamera = (az, el) => {
+  camera.az += az;
+  camera.el = Math.min(90, Math.max(-20, camera.el + el));
 };
 
 // A length that is read easily: 1, 2 or 5 of some power of ten.

@@ -142,11 +142,7 @@ const stage = (() => {
   rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
 
   const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by))), ask());
-  const turn = (az, el) => {
-    camera.az += az;
-    camera.el = Math.min(90, Math.max(-20, camera.el + el));
-    ask();
-  };
+  const turn = (az, el) => (turnCamera(az, el), ask());
   view.addEventListener("keydown", (event) => {
     const fine = event.shiftKey ? 10 : 1;
     const does = {
@@ -255,5 +251,6 @@ Object.assign(document.getElementById("stage"), {
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,
   drawing: stage.drawing,
+  table: (id) => csvOf(state.get(all.find((card) => card.dataset.plot === id)).plot),
   drawings: () => [...plots].map((plot) => ({ curves: plot.curves?.() ?? shownSeries(plot).length, svg: svgOf(plot, document.title) })).filter(({ curves }) => curves > 0),
 });
