@@ -330,6 +330,7 @@ def chart(browser, name):
         for points in [points for _, points in lines]:
             met = [points[-1][0], points[0][0]]
             expect(min(abs(x - LEFT_PX - share * wide) for x in met) < 1, f"{name}: a curve does not meet the clock at {share} of the run but {met}")
+            expect(all(a[0] <= b[0] for a, b in zip(points, points[1:])), f"{name}: a curve goes back in time")
         expect(set(names) <= set(texts), f"{name}: {texts} name not all of {names}")
     browser.run(DRAGGED, LEFT_PX, 0.4, RIGHT_PX)
     time.sleep(0.2)
@@ -387,6 +388,11 @@ def paths(browser, name):
             found = [row[f"{agents[0]}, {'xyz'[axis]}"] for axis in own["coordinates"]]
             expect(all(abs(a - b) < TOLERANCE_M for a, b in zip(found, own["tip"])), f"{name}: at {row['t_s']} s the path is at {found}, the tip at {own['tip']}")
         expect(any(key.endswith(", wanted, z") for key in rows[0]), f"{name}: what is wanted has no path among {list(rows[0])}")
+    if name == "six-arms":
+        # Arms that agree hold their tips alike, each from its own base.
+        for axis in "xyz":
+            ends = [rows[-1][f"{agent}, {axis}"] for agent in agents]
+            expect(max(ends) - min(ends) < 1e-3, f"{name}: paths end at {axis} = {ends}")
     if name == "formation":
         for axis in range(3):
             browser.run('const j = document.getElementById("joint"); j.value = arguments[0]; j.onchange()', str(axis))

@@ -135,13 +135,13 @@ const stage = (() => {
   chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), ask());
   part("view-reset").onclick = () => (Object.assign(camera, FIRST_VIEW, { zoom: 1 }), ask());
   const follow = part("follow");
-  follow.parentElement.hidden = !world.follows;
+  follow.parentElement.hidden = charted || !world.follows;
   follow.onchange = () => ((camera.follow = follow.checked), ask());
   part("graph-now").hidden = !scene.graphs.some((graph) => graph.length > 0);
   // A long run plays in about half a minute, whoever does not choose.
   rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
 
-  const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by))), ask());
+  const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(charted ? 1 : 0.3, camera.zoom * by))), ask());
   const turn = (az, el) => (turnCamera(az, el), ask());
   view.addEventListener("keydown", (event) => {
     const fine = event.shiftKey ? 10 : 1;
@@ -218,7 +218,9 @@ const stage = (() => {
 
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
-    view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
+    const led = scene.leader ? `, led by ${scene.leader.name}` : "";
+    view.setAttribute("aria-label", charted ? `positions of ${bodies.length} over time${led}; time by keys` : `${bodies.length} in space (${kinds})${led}; turn and time by keys`);
+    if (charted) part("view-help").textContent = "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it. Plots follow the same clock: point at one to go to that time.";
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
     tip.textContent = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
