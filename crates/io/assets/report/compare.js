@@ -135,7 +135,7 @@ const side = (() => {
     picture.drawEdges(ctx, see, frame, colours, heard);
     picture.drawWords(ctx, see, frame, colours, { hovered: null, alone: null });
     const over = now.t > run.until_s ? `Ended at ${number(run.until_s, 4)} s. ` : "";
-    const size = picture.railed ? "Each on a line of its own. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
+    const size = picture.charted ? "Positions over time. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
     const text = over + size + picture.graphWords(heard);
     if (words.textContent !== text) words.textContent = text;
     canvas.setAttribute("aria-label", `${run.name} at ${number(t, 4)} s: ${picture.bodies.length} in space`);

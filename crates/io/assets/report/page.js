@@ -27,6 +27,11 @@ const fill = (card, height) => {
     offer(card, mine.plot);
     return;
   }
+  if (kind === "path") {
+    mine.plot = drawPaths(canvas, height ?? 290);
+    offer(card, mine.plot);
+    return;
+  }
   const spec = cards[kind];
   mine.picks = drawPicks(card, spec, mine.picks);
   const built = spec.build(mine.picks);

@@ -18,12 +18,11 @@ const aim = (nodes) => {
 };
 
 // Axes of the camera and where it stands; as far away as everything needs to be seen.
-const looking = (width, height, nodes) => {
-  const [az, el] = [(camera.az * Math.PI) / 180, (camera.el * Math.PI) / 180];
+const lookingFrom = (width, height, { middle, points, extent }, { zoom, ...angles }) => {
+  const [az, el] = [(angles.az * Math.PI) / 180, (angles.el * Math.PI) / 180];
   const back = [Math.cos(el) * Math.cos(az), Math.cos(el) * Math.sin(az), Math.sin(el)];
   const right = [-Math.sin(az), Math.cos(az), 0];
   const upward = cross(back, right);
-  const { middle, points, extent } = aim(nodes);
   const focal = 0.5 * height / Math.tan(0.5 * FIELD);
   // A point at a, b to the side and c towards the camera fits where focal·|a| ≤ room·(distance − c).
   const [wide, high] = [Math.max(40, 0.5 * width - 46), Math.max(40, 0.5 * height - 34)];
@@ -33,7 +32,7 @@ const looking = (width, height, nodes) => {
     const nearer = dot(d, back);
     distance = Math.max(distance, nearer + (focal * Math.abs(dot(d, right))) / wide, nearer + (focal * Math.abs(dot(d, upward))) / high, nearer + 1e-3 * extent);
   }
-  distance = Math.max(distance, 0.4 * extent) / camera.zoom;
+  distance = Math.max(distance, 0.4 * extent) / zoom;
   const eye = add(middle, scaled(back, distance));
   const project = (p) => {
     const d = minusVector(p, eye);
@@ -45,15 +44,20 @@ const looking = (width, height, nodes) => {
   return { project, eye, middle, back, right, upward, distance, width, height };
 };
 
+const looking = (width, height, nodes) => (charted ? chartLooking(width, height, nodes) : lookingFrom(width, height, aim(nodes), camera));
+const turnCamera = (az, el) => {
+  camera.az += az;
+  camera.el = Math.min(90, Math.max(-20, camera.el + el));
+};
+
 // A length that is read easily: 1, 2 or 5 of some power of ten.
 const easy = (length) => {
   const unit = 10 ** Math.floor(Math.log10(length));
   return unit * ([5, 2, 1].find((m) => m * unit <= length) ?? 1);
 };
-const railed = layout.rails.size === bodies.length;
 const afloat = bodies.every((b) => b.kind === "spacecraft");
 const floorGrid = (() => {
-  if (railed || afloat) return { lines: [], step: 0 };
+  if (charted || afloat) return { lines: [], step: 0 };
   const { middle } = allOfIt;
   const size = [0, 1].map((k) => Math.max(world.high[k] - world.low[k], 0.2 * world.extent));
   const step = easy(Math.max(...size) / (world.follows ? 20 : 5));
@@ -68,7 +72,7 @@ const floorGrid = (() => {
 
 const inkOf = (colours, item) => (item.ink ? colours.ink : colours.agents[item.colour]);
 const sceneColours = () => ({
-  ink: colour("--ink"), muted: colour("--muted"), surface: colour("--surface"), grid: colour("--line"), soft: colour("--soft"),
+  ink: colour("--ink"), muted: colour("--muted"), surface: colour("--surface"), grid: colour("--line"), soft: colour("--soft"), accent: colour("--accent"),
   agents: bodies.map((b) => (b.vertex < agents.length ? colour(`--a${b.vertex}`) : colour("--ink"))),
 });
 
@@ -132,10 +136,12 @@ const drawSolids = (ctx, see, frame, colours) => {
 };
 
 const drawUnder = (ctx, see, colours) => {
+  if (charted) return drawChartGrid(ctx, see, colours);
   for (const points of floorGrid.lines) strokeLine(ctx, see, { points, width: 1 }, colours.grid);
 };
 
 const drawTrails = (ctx, see, frame, colours, hidden, alone) => {
+  if (charted) return drawChartCurves(ctx, see, frame, colours, hidden, alone);
   const until = Math.max(0, Math.floor((frame.place.row / Math.max(1, sceneTimes.length - 1)) * (TRAIL_ROWS - 1)));
   const many = bodies.length > 40;
   for (const body of bodies) {
@@ -152,10 +158,14 @@ const drawTrails = (ctx, see, frame, colours, hidden, alone) => {
 // Who hears whom: from the sender towards the receiver, the fainter the older what is heard, with what is on its way.
 const drawEdges = (ctx, see, frame, colours, heard) => {
   const at = new Map(frame.nodes.map(({ body, at }) => [body.vertex, see.project(at)]));
-  const many = heard.edges.length > 120;
-  for (const { from, to, share, flights } of heard.edges) {
-    const [a, b] = [at.get(from), at.get(to)];
-    if (!a || !b) continue;
+  // Over time they all lie beside the same line.
+  const many = heard.edges.length > (charted ? 24 : 120);
+  for (const { from, to, age, share, flights } of heard.edges) {
+    const b = at.get(to);
+    if (!at.has(from) || !b) continue;
+    // Over time an edge begins where its sender was when it said what is heard.
+    const a = charted && age > 0 ? see.project(chartSaid(bodies[from], Math.max(0, frame.time - age))) : at.get(from);
+    if (!a) continue;
     const far = Math.hypot(b.x - a.x, b.y - a.y);
     if (far < 16) continue;
     const [ux, uy] = [(b.x - a.x) / far, (b.y - a.y) / far];
@@ -235,6 +245,7 @@ const drawMarks = (ctx, see, frame, colours, hovered) => {
 const WORDS = '12px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
 // Names beside what they name, none over another; of many agents only those that are pointed at, chosen, or lead.
 const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
+  if (charted) return drawChartWords(ctx, see, frame, colours, { hovered, alone });
   const taken = [];
   const write = (text, x, y, fill, must) => {
     const wide = ctx.measureText(text).width;

@@ -40,12 +40,23 @@ const rangeOf = (values, from, to) => {
   for (let i = from; i <= to; i++) if (values[i] != null) [low, high] = [Math.min(low, values[i]), Math.max(high, values[i])];
   return [low, high];
 };
-// The smallest usual distance of ticks that leaves room for their labels.
-const stepOf = (perPixel, room) => increments.find((step) => step / perPixel >= room) ?? 1;
 
 const MOST_POINTS = 200_000;
 const POINTS_EACH = 20;
 const MARGIN = { left: 62, right: 20, top: 16, bottom: 30 };
+
+// An empty canvas of a size, as sharp as the screen.
+const preparedCanvas = (canvas, ctx, size) => {
+  const scale = Math.min(2, devicePixelRatio || 1);
+  const [width, high] = [Math.round(size.width * scale), Math.round(size.height * scale)];
+  if (canvas.width !== width || canvas.height !== high) {
+    Object.assign(canvas, { width, height: high });
+    Object.assign(canvas.style, { width: `${size.width}px`, height: `${size.height}px` });
+  }
+  ctx.setTransform(scale, 0, 0, scale, 0, 0);
+  ctx.clearRect(0, 0, size.width, size.height);
+  return ctx;
+};
 
 const drawPlane = (target, [acrossId, upId], height) => {
   const [across, up] = [quantities[+acrossId], quantities[+upId]];
@@ -144,18 +155,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
   };
 
   const contexts = canvases.map((canvas) => canvas.getContext("2d"));
-  const prepared = (k) => {
-    const scale = Math.min(2, devicePixelRatio || 1);
-    const [canvas, ctx] = [canvases[k], contexts[k]];
-    const [width, high] = [Math.round(size.width * scale), Math.round(size.height * scale)];
-    if (canvas.width !== width || canvas.height !== high) {
-      Object.assign(canvas, { width, height: high });
-      Object.assign(canvas.style, { width: `${size.width}px`, height: `${size.height}px` });
-    }
-    ctx.setTransform(scale, 0, 0, scale, 0, 0);
-    ctx.clearRect(0, 0, size.width, size.height);
-    return ctx;
-  };
+  const prepared = (k) => preparedCanvas(canvases[k], contexts[k], size);
   const dotsAt = (ctx, t) => {
     const place = data.place("main", t);
     const between = (values) => {

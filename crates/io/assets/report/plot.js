@@ -34,6 +34,9 @@ const decades = (min, max) => {
 // Distances of ticks for all sizes a single-precision number can have; the library's own end at 1e16.
 const increments = Array.from({ length: 80 }, (_, k) => [1, 2, 2.5, 5].map((m) => +`${m}e${k - 40}`)).flat();
 
+// The smallest usual distance of ticks that leaves room for their labels.
+const stepOf = (perPixel, room) => increments.find((step) => step / perPixel >= room) ?? 1;
+
 // Whole decades, but none below what double precision can tell from one, or from the greatest value.
 const logRange = (u, min, max) => {
   if (!(min > 0) || !(max > 0)) return [1e-3, 1];

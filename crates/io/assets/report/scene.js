@@ -235,8 +235,12 @@ const drawSpacecraft = (body, q, place, at, solid, line, into) => {
 // Everything at a time; `hidden` says of which agents nothing is drawn.
 const frameAt = (time, hidden = () => false) => {
   const place = data.place("scene", time);
-  const into = { solids: [], parts: [], lines: [], faces: [], dots: [], arrows: [], crosses: [], nodes: [], words: [], place };
+  const into = { solids: [], parts: [], lines: [], faces: [], dots: [], arrows: [], crosses: [], nodes: [], words: [], place, time };
   if (sceneTimes.length === 0) return into;
-  for (const body of bodies) if (!hidden(body)) drawBody(body, place, into);
+  for (const body of bodies) {
+    if (hidden(body)) continue;
+    if (charted) drawChartBody(body, place, time, into);
+    else drawBody(body, place, into);
+  }
   return into;
 };

@@ -1,10 +1,23 @@
 // Bodies with light and depth, where the browser has WebGL: one drawn cylinder and one sphere, as often as needed.
 
+// Whether the browser has WebGL without a graphics card, as far as it says.
+const drawsInSoftware = () => {
+  const context = element("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  if (context === null) return true;
+  let name = String(context.getParameter(context.RENDERER));
+  // Some name the driver only when asked in this way.
+  const info = name === "WebKit WebGL" ? context.getExtension("WEBGL_debug_renderer_info") : null;
+  if (info) name = String(context.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+};
+
 const lighting = (() => {
   const canvas = element("canvas");
-  if (typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
-  // Asked for here, where a browser without it says nothing.
-  const context = canvas.getContext("webgl2", { alpha: true, antialias: true });
+  if (charted || typeof THREE === "undefined" || new URLSearchParams(location.search).has("flat")) return null;
+  // Asked for here, where a browser without it says nothing. Without a graphics card edges are left as they are, and shapes are coarser.
+  const inSoftware = drawsInSoftware();
+  const context = canvas.getContext("webgl2", { alpha: true, antialias: !inSoftware });
   if (context === null) return null;
   let renderer;
   try {
@@ -16,12 +29,27 @@ const lighting = (() => {
   const sun = new THREE.DirectionalLight(0xffffff, 2.1);
   world3.add(new THREE.HemisphereLight(0xffffff, 0x8a8f99, 1.5), sun);
   const eye = new THREE.PerspectiveCamera((FIELD * 180) / Math.PI, 1, 0.1, 1000);
-  const round = { cylinder: new THREE.CylinderGeometry(1, 1, 1, 16, 1, true), sphere: new THREE.SphereGeometry(1, 16, 10) };
+  const [sides, rings] = inSoftware ? [10, 6] : [16, 10];
+  const round = { cylinder: new THREE.CylinderGeometry(1, 1, 1, sides, 1, true), sphere: new THREE.SphereGeometry(1, sides, rings) };
   const material = new THREE.MeshLambertMaterial({ color: 0xffffff });
   const floor = new THREE.BufferGeometry();
   floor.setAttribute("position", new THREE.BufferAttribute(new Float32Array(floorGrid.lines.flat(2)), 3));
   const pencil = new THREE.LineBasicMaterial({ color: 0xcccccc });
-  world3.add(new THREE.LineSegments(floor, pencil));
+  if (!inSoftware) world3.add(new THREE.LineSegments(floor, pencil));
+  // Thin lines would be interrupted there, so the floor is drawn by hand underneath.
+  const ground = inSoftware ? element("canvas") : null;
+  const layers = element("div", {}, ...(ground ? [ground] : []), canvas);
+  let grounded = "";
+  const drawGround = (see, colours) => {
+    const scale = Math.min(2, devicePixelRatio || 1);
+    const asBefore = [see.width, see.height, scale, colours.grid, ...see.eye, ...see.back].join();
+    if (grounded === asBefore) return;
+    grounded = asBefore;
+    Object.assign(ground, { width: Math.round(see.width * scale), height: Math.round(see.height * scale) });
+    const pen = ground.getContext("2d");
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    drawUnder(pen, see, colours);
+  };
   let meshes = null;
   const room = (count) => {
     if (meshes && meshes.size >= count) return meshes;
@@ -54,8 +82,23 @@ const lighting = (() => {
     if (!paints.has(name)) paints.set(name, new THREE.Color(text).lerp(new THREE.Color(0x999999), faint ? 0.45 : 0));
     return paints.get(name);
   };
-  const draw = (see, frame, colours) => {
-    const scale = Math.min(2, devicePixelRatio || 1);
+  // Pixels of what moves for each of the page, which a slow browser is given fewer of.
+  let share = 1;
+  const coarser = () => {
+    if (share <= 0.5) return false;
+    share -= 0.25;
+    return true;
+  };
+  // In software what stands still is drawn with more pixels than the screen has, which smooths its edges.
+  const density = (still) => {
+    const usual = Math.min(2, devicePixelRatio || 1);
+    if (still) return inSoftware ? 2 : usual;
+    return share * (inSoftware ? Math.min(1, usual) : usual);
+  };
+  // The ball at the beginning of a link is hidden in that at the end of the one before, if that is as thick.
+  const covered = (solid, before) => before !== undefined && before.colour === solid.colour && before.r >= solid.r && before.b.every((x, i) => x === solid.a[i]);
+  const draw = (see, frame, colours, still = false) => {
+    const scale = density(still);
     if (renderer.getPixelRatio() !== scale) renderer.setPixelRatio(scale);
     renderer.setSize(see.width, see.height, false);
     eye.aspect = see.width / see.height;
@@ -67,9 +110,12 @@ const lighting = (() => {
     eye.updateProjectionMatrix();
     sun.position.set(...add(add(see.back, scaled(see.upward, 0.8)), scaled(see.right, -0.6)));
     pencil.color.set(colours.grid);
+    if (ground) drawGround(see, colours);
     const capsules = frame.solids.filter((solid) => !solid.shaped);
     const { tubes, balls } = room(capsules.length);
-    capsules.forEach(({ a, b, r, faint, ...item }, k) => {
+    let ends = 0;
+    capsules.forEach((solid, k) => {
+      const { a, b, r, faint } = solid;
       const along = minusVector(b, a);
       const length = size(along);
       const y = length > 0 ? scaled(along, 1 / length) : [0, 0, 1];
@@ -78,16 +124,17 @@ const lighting = (() => {
       const m = scaled(add(a, b), 0.5);
       matrix.set(r * x[0], length * y[0], r * z[0], m[0], r * x[1], length * y[1], r * z[1], m[1], r * x[2], length * y[2], r * z[2], m[2], 0, 0, 0, 1);
       tubes.setMatrixAt(k, matrix);
-      const tint = paint(inkOf(colours, item), faint);
+      const tint = paint(inkOf(colours, solid), faint);
       tubes.setColorAt(k, tint);
-      [a, b].forEach((p, end) => {
+      for (const p of covered(solid, capsules[k - 1]) ? [b] : [a, b]) {
         matrix.set(r, 0, 0, p[0], 0, r, 0, p[1], 0, 0, r, p[2], 0, 0, 0, 1);
-        balls.setMatrixAt(2 * k + end, matrix);
-        balls.setColorAt(2 * k + end, tint);
-      });
+        balls.setMatrixAt(ends, matrix);
+        balls.setColorAt(ends, tint);
+        ends += 1;
+      }
     });
     tubes.count = capsules.length;
-    balls.count = 2 * capsules.length;
+    balls.count = ends;
     shapes.forEach((shape, k) => {
       const own = frame.parts.filter((part) => part.solid === k).slice(0, shape.most);
       own.forEach(({ turn: [x, y, z], at, faint, ...item }, n) => {
@@ -103,5 +150,5 @@ const lighting = (() => {
     }
     renderer.render(world3, eye);
   };
-  return { canvas, draw };
+  return { canvas, layers, draw, coarser, inSoftware };
 })();

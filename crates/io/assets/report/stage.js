@@ -6,7 +6,7 @@ const stage = (() => {
   const graphPicture = graphIn(part("graph-picture"));
   const overlay = element("canvas", { className: "over" });
   const tip = element("p", { className: "where" });
-  view.append(...(lighting ? [lighting.canvas] : []), overlay, tip);
+  view.append(...(lighting ? [lighting.layers] : []), overlay, tip);
   const ctx = overlay.getContext("2d");
   const end = whole[1];
   const now = { t: part("stage").dataset.goesOn === "true" ? end : 0, playing: false, since: 0, hovered: null, alone: null, flat: lighting === null };
@@ -47,6 +47,13 @@ const stage = (() => {
   };
   part("view-svg").onclick = () => save("view.svg", new Blob([drawing()], { type: "image/svg+xml" }));
 
+  // Where nothing moves for a moment it is drawn finely.
+  let finely = 0;
+  const lit = () => {
+    clearTimeout(finely);
+    lighting.draw(seen.see, seen.frame, colours);
+    if (!now.playing) finely = setTimeout(() => now.flat || lighting.draw(seen.see, seen.frame, colours, true), 160);
+  };
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -59,9 +66,9 @@ const stage = (() => {
     const see = looking(width, height, frame.nodes);
     // What passes in less than six frames only flickers.
     const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
-    if (!now.flat) lighting.draw(see, frame, colours);
     paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
+    if (!now.flat) lit();
     frames += 1;
     timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
     slider.value = String(now.t);
@@ -86,9 +93,15 @@ const stage = (() => {
   let usual = 16;
   const noticeSlowness = (interval) => {
     usual += 0.1 * (Math.min(100, interval) - usual);
-    if (now.flat || usual < 40) return;
+    if (now.flat || usual < 33) return;
+    // Fewer pixels first.
+    if (lighting.coarser()) {
+      usual = 16;
+      return;
+    }
+    if (usual < 40) return;
     now.flat = true;
-    lighting.canvas.hidden = true;
+    lighting.layers.hidden = true;
     tip.textContent += "; projected, since light and depth are slow here";
   };
   // Whoever asked for less motion sees a picture every half second.
@@ -122,18 +135,14 @@ const stage = (() => {
   chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), ask());
   part("view-reset").onclick = () => (Object.assign(camera, FIRST_VIEW, { zoom: 1 }), ask());
   const follow = part("follow");
-  follow.parentElement.hidden = !world.follows;
+  follow.parentElement.hidden = charted || !world.follows;
   follow.onchange = () => ((camera.follow = follow.checked), ask());
   part("graph-now").hidden = !scene.graphs.some((graph) => graph.length > 0);
   // A long run plays in about half a minute, whoever does not choose.
   rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
 
-  const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by))), ask());
-  const turn = (az, el) => {
-    camera.az += az;
-    camera.el = Math.min(90, Math.max(-20, camera.el + el));
-    ask();
-  };
+  const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(charted ? 1 : 0.3, camera.zoom * by))), ask());
+  const turn = (az, el) => (turnCamera(az, el), ask());
   view.addEventListener("keydown", (event) => {
     const fine = event.shiftKey ? 10 : 1;
     const does = {
@@ -187,6 +196,7 @@ const stage = (() => {
     held.set(event.pointerId, here);
     if (Math.hypot(here.x - before.x, here.y - before.y) > 1) moved = true;
     if (held.size === 2) zoom(apart() / Math.max(1, wide));
+    else if (charted) setPlaying(false), go(seen.see.timeAt(here.x - overlay.getBoundingClientRect().left));
     else turn(-0.4 * (here.x - before.x), 0.4 * (here.y - before.y));
   });
   const release = (event) => {
@@ -208,18 +218,20 @@ const stage = (() => {
 
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
-    view.setAttribute("aria-label", `${bodies.length} in space (${kinds})${scene.leader ? `, led by ${scene.leader.name}` : ""}; turn and time by keys`);
+    const led = scene.leader ? `, led by ${scene.leader.name}` : "";
+    view.setAttribute("aria-label", charted ? `positions of ${bodies.length} over time${led}; time by keys` : `${bodies.length} in space (${kinds})${led}; turn and time by keys`);
+    if (charted) part("view-help").textContent = "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it. Plots follow the same clock: point at one to go to that time.";
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
-    tip.textContent = railed ? "each on a line of its own" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+    tip.textContent = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
   let flatBefore = now.flat;
-  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.canvas.hidden = true), (colours = sceneColours()), draw()));
-  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.canvas.hidden = flatBefore), themed()));
-  lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.canvas.hidden = true), ask()));
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), draw()));
+  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.layers.hidden = flatBefore), themed()));
+  lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.layers.hidden = true), ask()));
   new ResizeObserver(ask).observe(view);
   draw();
   return { go, ask, now, end, drawing, paint: paintAt, watch: (watcher) => void watchers.push(watcher), frames: () => frames, playing: () => now.playing };
@@ -232,6 +244,7 @@ Object.assign(document.getElementById("stage"), {
   go: stage.go,
   time: () => stage.now.t,
   flat: () => stage.now.flat,
+  software: () => lighting?.inSoftware ?? false,
   parts: (t) => frameAt(t).parts,
   names: () => bodies.map((body) => body.name),
   flights: (t) => heardAt(t).edges,
@@ -240,5 +253,6 @@ Object.assign(document.getElementById("stage"), {
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,
   drawing: stage.drawing,
+  table: (id) => csvOf(state.get(all.find((card) => card.dataset.plot === id)).plot),
   drawings: () => [...plots].map((plot) => ({ curves: plot.curves?.() ?? shownSeries(plot).length, svg: svgOf(plot, document.title) })).filter(({ curves }) => curves > 0),
 });

@@ -42,12 +42,13 @@ const STAGE_CSS: &str = include_str!("../../../assets/report/stage.css");
 /// Draws bodies; only on pages that have some.
 const THREE_JS: &str = include_str!("../../../assets/three/three.iife.min.js");
 /// In the order in which they build on each other.
-const PAGE_JS: [&str; 15] = [
+const PAGE_JS: [&str; 17] = [
     include_str!("../../../assets/report/data.js"),
     include_str!("../../../assets/report/plot.js"),
     include_str!("../../../assets/report/cards.js"),
     include_str!("../../../assets/report/vectors.js"),
     include_str!("../../../assets/report/scene.js"),
+    include_str!("../../../assets/report/chart.js"),
     include_str!("../../../assets/report/painter.js"),
     include_str!("../../../assets/report/solids.js"),
     include_str!("../../../assets/report/flights.js"),
@@ -55,6 +56,7 @@ const PAGE_JS: [&str; 15] = [
     include_str!("../../../assets/report/svg.js"),
     include_str!("../../../assets/report/export.js"),
     include_str!("../../../assets/report/plane.js"),
+    include_str!("../../../assets/report/paths.js"),
     include_str!("../../../assets/report/page.js"),
     include_str!("../../../assets/report/stage.js"),
     include_str!("../../../assets/report/talk.js"),

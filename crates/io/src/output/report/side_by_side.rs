@@ -21,14 +21,15 @@ const COMMON_JS: [&str; 3] = [
     include_str!("../../../assets/report/vectors.js"),
 ];
 /// One picture, from what `index`, `data`, `agents` and `colour` are of its run.
-const PICTURE_JS: [&str; 4] = [
+const PICTURE_JS: [&str; 5] = [
     include_str!("../../../assets/report/scene.js"),
+    include_str!("../../../assets/report/chart.js"),
     include_str!("../../../assets/report/painter.js"),
     include_str!("../../../assets/report/flights.js"),
     include_str!("../../../assets/report/graph.js"),
 ];
 const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents) => {\n";
-const END_PICTURE: &str = "return { bodies, scene, world, railed, floorGrid, camera, frameAt, looking, heardAt, graphWords, trailPoint, sceneColours, \
+const END_PICTURE: &str = "return { bodies, scene, world, charted, floorGrid, camera, frameAt, looking, heardAt, graphWords, trailPoint, sceneColours, \
                            drawUnder, drawSolids, drawTrails, drawMarks, drawEdges, drawWords };\n};\n";
 /// What leaves the page, and the page itself.
 const LAST_JS: [&str; 3] = [
