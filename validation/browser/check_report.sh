@@ -39,9 +39,9 @@ for report in "$@"; do
   dom=$profile/dom.html
   log=$profile/log.txt
   "$chromium" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking \
-    --disable-component-update --disable-sync --user-data-dir="$profile/data" --window-size=1280,2000 \
+    --disable-component-update --disable-sync --enable-unsafe-swiftshader --user-data-dir="$profile/data" --window-size=1280,2000 \
     --virtual-time-budget=8000 --enable-logging=stderr --dump-dom "file://$(realpath "$report")" >"$dom" 2>"$log"
-  canvases=$(grep -o 'class="u-wrap"' "$dom" | wc -l)
+  canvases=$(grep -oE 'class="(u-wrap|plane|plane turns)"' "$dom" | wc -l)
   plots=$(grep -o 'data-ready="[0-9]*"' "$dom" | grep -o '[0-9]*' || echo none)
   words=$(grep -o '<p class="none">[^<]*' "$dom" | wc -l || true)
   problem=""

@@ -97,7 +97,17 @@ const drawPathBox = (pen, see, { from, to, step, middle }) => {
   const upright = side.reduce((a, b) => (see.project(a).x <= see.project(b).x ? a : b));
   const edges = [at(0, 0, [0, near[1], far[2]]), at(1, 0, [near[0], 0, far[2]]), upright];
   Object.assign(pen, { font: axisFont, textBaseline: "middle", textAlign: "center" });
-  edges.forEach((edge, k) => {
+  // Names first, then numbers where there is room left.
+  const taken = [];
+  const word = (text, x, y, ink) => {
+    const half = 0.5 * pen.measureText(text).width + 2;
+    const box = [x - half, y - 7, x + half, y + 7];
+    if (taken.some((b) => b[0] < box[2] && box[0] < b[2] && b[1] < box[3] && box[1] < b[3])) return;
+    taken.push(box);
+    pen.fillStyle = colour(ink);
+    pen.fillText(text, x, y);
+  };
+  const numbered = edges.map((edge, k) => {
     const mid = see.project(at(k, middle[k], edge));
     const ends = [from[k], to[k]].map((v) => see.project(at(k, v, edge)));
     // Outwards, across the edge.
@@ -106,15 +116,16 @@ const drawPathBox = (pen, see, { from, to, step, middle }) => {
     if (ox * (mid.x - centre.x) + oy * (mid.y - centre.y) < 0) [ox, oy] = [-ox, -oy];
     // A picture of what points down counts downwards.
     const sign = scene.down && k > 0 ? -1 : 1;
-    const word = (text, p, far, ink) => ((pen.fillStyle = colour(ink)), pen.fillText(text, p.x + far * 1.25 * ox, p.y + far * oy));
-    if (length < 24) return;
+    const beside = (text, p, far, ink) => word(text, p.x + far * 1.25 * ox, p.y + far * oy, ink);
+    if (length < 24) return () => {};
     const ticks = ticksOf(k);
     const apart = (length * step) / (to[k] - from[k]);
     const room = Math.abs(ox) > 0.7 ? 15 : 32;
     const every = Math.ceil(room / apart);
-    ticks.forEach((value, n) => n % every === 0 && word(tick(sign * value, step), see.project(at(k, value, edge)), 14, "--muted"));
-    word("xyz"[k], mid, 27 + 15 * Math.abs(ox), "--soft");
+    beside("xyz"[k], mid, 27 + 15 * Math.abs(ox), "--soft");
+    return () => ticks.forEach((value, n) => n % every === 0 && beside(tick(sign * value, step), see.project(at(k, value, edge)), 14, "--muted"));
   });
+  numbered.forEach((write) => write());
   Object.assign(pen, { textAlign: "left", textBaseline: "alphabetic" });
   return far[2];
 };
