@@ -273,7 +273,7 @@ fn a_run_that_follows_itself_writes_the_same() {
     assert!(fs::read_to_string(&page).unwrap().contains("Cut off") && shown_until(&page).is_none());
     assert!(!names(&path("killed")).iter().any(|name| name.contains("partial")));
 
-    fs::write(path("mine/long.toml"), LONG).unwrap();
+    fs::write(path("mine/long.toml"), LONG.replace("step_s = 2e-5", "step_s = 5e-6")).unwrap();
     let mut run = start_followed(&folder, "followed");
     assert!(has_journal(&mut run, &path("followed")));
     assert!(!times_shown(&path("followed/report.html"), 1).is_empty());
@@ -313,6 +313,7 @@ fn who_follows_a_folder_that_vanishes_is_told_and_the_run_writes_it_again() {
 #[test]
 fn a_page_that_cannot_be_written_ends_no_run() {
     let folder = scenario();
+    fs::write(folder.path().join("mine/long.toml"), LONG.replace("step_s = 2e-5", "step_s = 5e-6")).unwrap();
     // Half a megabyte, less than a page: the rows of some seconds fit.
     let limited = Process::new("sh")
         .current_dir(&folder)
