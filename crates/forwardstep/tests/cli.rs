@@ -452,6 +452,22 @@ fn a_run_that_looks_quick_at_first_is_told_how_long_its_design_takes() {
     }
 }
 
+/// What delays leave is not put down to the robots; what robots leave is.
+#[test]
+fn what_late_links_leave_behind_a_leader_is_said_to_be_theirs() {
+    let folder = folder();
+    let shipped = forwardstep::io::scenario::shipped_scenario("leader-over-late-links").unwrap().text;
+    let goal = shipped.replace("error_below = 0.14", "error_below = 0.014");
+    let prompt = goal.lines().filter(|line| !line.starts_with("delay.")).collect::<Vec<_>>().join("\n");
+    let loose = prompt.replace("damping.gain = 100", "damping.gain = 0.3").replace("end_s = 40", "end_s = 10");
+    for (name, text, late) in [("late", &goal, true), ("loose", &loose, false)] {
+        fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
+        let said = stdout(&forwardstep(&folder, &["run", &format!("{name}.toml")]).code(1));
+        assert_eq!(said.contains("messages are late"), late, "{name}: {said}");
+        assert_eq!(said.contains("robots do not follow"), !late, "{name}: {said}");
+    }
+}
+
 #[test]
 fn a_goal_about_one_agent_alone_is_refused() {
     let folder = folder();
