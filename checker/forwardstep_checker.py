@@ -578,7 +578,7 @@ GAINS = {
     "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
     "adaptive_backstepping": ("gains_per_s", "adaptation_gain"), "passivity_filter": ("error_gain_n_m", "filter_gain_per_s", "damping")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
-                  "bounds determinant_floor antiderivatives null_space tip_velocity")
+                  "bounds determinant_floor antiderivatives null_space tip_velocity bias_m_s2")
 REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
 DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlinear stable_because input_to_state_stable_because"
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
@@ -938,17 +938,17 @@ def theorem(scenario):
     if scenario.reference == "desired": return "desired-dynamics"
     if scenario.reference == "leader":
         return ({"continuous": "theorem-8" + scenario.over()} | LED).get(scenario.body.get("design"), "no design")
-    kinds = {treated(agent) for agent in agents}
-    if len(kinds) > 1: return "targets" if tracking else "mixture"
+    if len(kinds := {treated(agent) for agent in agents}) > 1: return "targets" if tracking else "mixture"
     tip = "tip-velocity" if any("tip_velocity" in agent.gains for agent in agents) else "theorem-6" + max(map(extension, agents))
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
-             "task space": tip, "attitude": "theorem-7", "chain": f"chains-{'track' if tracking else 'agree'}",
-             "position only": "position-only-tracks" if tracking else "remark-7", "passivity filter": "passivity-filter"}
+             "thrust by_acceleration": "thrust-by-acceleration", "task space": tip, "attitude": "theorem-7",
+             "passivity filter": "passivity-filter", "chain": f"chains-{'track' if tracking else 'agree'}",
+             "position only": "position-only-tracks" if tracking else "remark-7"}
     if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
     if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
-    if scenario.reference != "consensus":
-        return "backstepping" if scenario.reference == "backstepping" else "theorem-1" if velocities else "remark-3"
+    if scenario.reference == "backstepping": return "backstepping"
+    if scenario.reference != "consensus": return "theorem-1" if velocities else "remark-3"
     if not velocities or order == 1: return "theorem-3-first-order" if velocities else "theorem-3-positions"
     return "theorem-2" if order == 2 and all(agent.roots == agents[0].roots for agent in agents) else "theorem-3-velocities"
 
@@ -978,7 +978,7 @@ def requirements(scenario):
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if treated(a) == a.law.replace("_", " "))),
         ({"continuous"} in designs, "known-masses"), (any(each - {"continuous"} for each in designs), "thrust-gains"),
         (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
-        (any("rotors" in agent.body for agent in flying), "every-wrench"),
+        (any("rotors" in agent.body for agent in flying), "every-wrench"), ("thrust by_acceleration" in kinds, "unbiased-acceleration"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
         (any(agent.pushes and agent.robot.endswith("feedback") for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
@@ -1394,7 +1394,7 @@ def rests(agent):
     return still(agent) or entries in ([entries[0]] * 3, [entries[0] if k % 4 == 0 else 0 for k in range(9)])
 
 TEXT = {
-    "target-at-rest": lambda scenario, own: all(map(rests, own)),
+    "unbiased-acceleration": lambda scenario, _: not any(any(agent.settings().get("bias_m_s2", [])) for agent in scenario.agents),
     "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
     "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),
     "defined-terms": lambda scenario, _: all(everywhere(term) for a in scenario.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
@@ -1407,7 +1407,7 @@ TEXT = {
     "shared-design": lambda scenario, _: scenario.reference == "leader", "desired-design": lambda scenario, _: scenario.desired,
     "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
     "known-momentum": lambda scenario, own: not any(a.pushes for a in own), "set-valued-sign": lambda scenario, _: set_valued(scenario),
-    "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"},
+    "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"}, "target-at-rest": lambda scenario, own: all(map(rests, own)),
     "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law != "task_space"),
     "lengths-within-bounds": lambda scenario, own: all(map(lengths_hold, own)),
     # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
@@ -1670,7 +1670,7 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
 # How many derivatives of a target a law needs, or the order of what follows it.
 def needed(agent, polynomial):
     order = len(agent.roots) if agent.law in CHAIN_LAWS else max(len(agent.roots), 2)
-    known_ = {"position_only": 3, "task_space": 2, "attitude": 2, "thrust": 3 if design_of(agent) == "continuous" else 4}
+    known_ = {"position_only": 3, "task_space": 2, "attitude": 2, "thrust": 4 if design_of(agent) in ("differentiable", "adaptive") else 3}
     return len(polynomial) - 1 if polynomial else known_.get(agent.law, order)
 
 # For each motion of a claim its axes, and the lowest and the highest derivative that has to be bounded.

@@ -1,8 +1,8 @@
 """Closed loops of vehicles with one thrust, (44) with (46), (50) or (57) and (58), computed without any part of forwardstep.
 
 Written from the paper in its own terms, and unlike the program on purpose: attitudes are rotation matrices, the mass estimate
-is integrated directly from (58) with the acceleration, and z is (49) written out. Needs nothing but Python. Writes vehicles.json
-beside itself.
+is integrated directly from (58) with the acceleration, and z is (49) written out; by a measured acceleration, which a bias shifts, it
+is (24) of order two. Needs nothing but Python. Writes vehicles.json beside itself.
 
     python3 validation/vehicles/generate.py
 """
@@ -18,6 +18,7 @@ import steps  # noqa: E402
 G = 9.81
 ROOTS = (1.0, 1.5, 2.0)
 ALPHA_STAR, STIFFNESS, GAMMA_STAR = 3.0, 4.0, 0.2
+BIAS = [0.1, -0.2, 0.15]
 YAW_GAIN, HEADING = 1.0, 0.5
 SAMPLES = [0.62 * k for k in range(1, 11)]
 # Two graphs in turn, as (from, to), all weights one, no delay.
@@ -47,7 +48,7 @@ LENGTH = 3 + 3 + 9 + 1 + 9 + 1
 
 
 def start(agent, design):
-    mass = ESTIMATE if design == "adaptive" else MASSES[agent]
+    mass = ESTIMATE if design in ("adaptive", "by acceleration") else MASSES[agent]
     state = list(START[agent]) + list(VELOCITY) + [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0] + [mass * G] + [0.0] * 9
     return state + [mass]
 
@@ -75,6 +76,19 @@ def rate(t, state, middle, design, formation):
             ]
             jerk = [psi[k] + d[k][3] + a * d[k][2] for k in range(3)]
             u = [MASSES[i] * (jerk[k] - (a * G if k == 2 else 0.0)) for k in range(3)]
+        elif design == "by acceleration":
+            first, second = ROOTS[0] + ROOTS[1], ROOTS[0] * ROOTS[1]
+            # z, dz, and in the place of ddz nothing.
+            jerk = [
+                -first * dz[k] - second * dy[k]
+                - sum(dz[k] + first * dy[k] + second * (y[k] - centres[j][k]) for j in heard)
+                for k in range(3)
+            ]
+            a = ALPHA_STAR
+            w = [jerk[k] + d[k][3] + a * (dz[k] + d[k][2]) - (a * G if k == 2 else 0.0) for k in range(3)]
+            d_m_hat = -GAMMA_STAR * sum(w[k] * (ddx[k] + BIAS[k] - dz[k] - d[k][2]) for k in range(3))
+            u = [m_hat * w[k] for k in range(3)]
+            ddz = jerk
         else:
             p, q, c = ROOTS
             first, second, third = p + q + c, p * q + p * c + q * c, p * q * c
@@ -101,6 +115,8 @@ def rate(t, state, middle, design, formation):
         out += list(dx) + ddx + d_r[0] + d_r[1] + d_r[2] + [v[2] - a * sigma] + dz + ddz + dddz + [d_m_hat]
         if design == "continuous":
             out[-10:-1] = [0.0] * 9
+        if design == "by acceleration":
+            out[-4:-1] = [0.0] * 3
     return out
 
 
@@ -108,17 +124,17 @@ def case(design, formation):
     state = [value for agent in range(3) for value in start(agent, design)]
     field = lambda t, state, middle, past: rate(t, state, middle, design, formation)
     run = lambda h: steps.solve(field, state, SAMPLES, h, NETWORK.stops(SAMPLES[-1]))
-    rows, gap = steps.checked(run, 0.0005 if design == "adaptive" else 0.001, 1e-8)
+    rows, gap = steps.checked(run, 0.001 if design in ("continuous", "differentiable") else 0.0005, 1e-8)
     name = design + (" in formation" if formation else "")
     print(name, "half as many steps change it by", gap)
     agents = []
     for k in range(3):
         own = [row[k * LENGTH:(k + 1) * LENGTH] for row in rows]
         agents.append({"q": [s[0:3] for s in own], "dq": [s[3:6] for s in own], "sigma": [[s[15]] for s in own]})
-        if design == "adaptive":
+        if design in ("adaptive", "by acceleration"):
             agents[-1]["theta_hat"] = [[s[25]] for s in own]
     return {"name": name, "t_s": SAMPLES, "agents": agents}
 
 
-designs = ("continuous", "differentiable", "adaptive")
+designs = ("continuous", "differentiable", "adaptive", "by acceleration")
 steps.write(HERE / "vehicles.json", [case(design, formation) for design in designs for formation in (False, True)])

@@ -61,6 +61,8 @@ pub enum Theorem {
     Theorem4,
     /// Theorem 5.
     Theorem5,
+    /// Vehicles by their measured acceleration, as Remark 8 names for contrast.
+    ThrustByAcceleration,
     /// Theorem 6.
     Theorem6,
     /// The argument of Theorem 6 for positions and orientations of six joints.
@@ -115,6 +117,7 @@ impl Theorem {
             Theorem::ContinuousThrust => "continuous-thrust",
             Theorem::Theorem4 => "theorem-4",
             Theorem::Theorem5 => "theorem-5",
+            Theorem::ThrustByAcceleration => "thrust-by-acceleration",
             Theorem::Theorem6 => "theorem-6",
             Theorem::Theorem6Pose => "theorem-6-pose",
             Theorem::Theorem6Redundant => "theorem-6-redundant",
@@ -168,6 +171,7 @@ impl Theorem {
             | Theorem::Theorem6Redundant
             | Theorem::PassivityFilter
             | Theorem::TipVelocity
+            | Theorem::ThrustByAcceleration
             | Theorem::LeaderObserver
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
@@ -217,6 +221,9 @@ impl fmt::Display for Theorem {
             Theorem::ContinuousThrust => "Section V-B, continuous control (45), (46)",
             Theorem::Theorem4 => "Theorem 4, (50) with the reference dynamics (49)",
             Theorem::Theorem5 => "Theorem 5, (57) and (58) with the reference dynamics (49)",
+            Theorem::ThrustByAcceleration => {
+                "no theorem of the paper: vehicles by their measured acceleration, in the manner of what Remark 8 compares Theorem 5 with"
+            }
             Theorem::Theorem6 => "Theorem 6, (80) to (82) with the reference dynamics (76)",
             Theorem::Theorem6Pose => {
                 "no theorem of the paper: the argument of Theorem 6 for poses, with k_o Δq_v beside K_p Δp in (76) and (80) to (82)"

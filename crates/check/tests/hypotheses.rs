@@ -18,7 +18,7 @@ use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
-const NAMES: [&str; 62] = [
+const NAMES: [&str; 63] = [
     "spanning-tree",
     "leader-reaches-all",
     "leader-in-every-graph",
@@ -65,6 +65,7 @@ const NAMES: [&str; 62] = [
     "known-masses",
     "thrust-gains",
     "nonzero-thrust",
+    "unbiased-acceleration",
     "angular-velocity",
     "every-wrench",
     "declared",

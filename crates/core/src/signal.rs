@@ -56,6 +56,10 @@ pub enum Signal {
     AngularVelocityWanted,
     /// σ, the thrust. One entry.
     Thrust,
+    /// σ̇, the rate of the thrust where that is an input. One entry.
+    ThrustRate,
+    /// ẍ as it is measured; only of laws that measure it.
+    Acceleration,
     /// The heading that is kept, an angle. One entry.
     Heading,
     /// ẏ of such a filter where the law uses it.
@@ -240,6 +244,8 @@ impl Signal {
             Signal::AngularVelocity => Row::new("omega", Fixed("rad/s"), Axes, card_with("Angular velocity", "ω in the body’s axes", Signal::AngularVelocityWanted)).jumps(),
             Signal::AngularVelocityWanted => Row::new("omega_commanded", Fixed("rad/s"), Axes, Beside).jumps(),
             Signal::Thrust => Row::new("sigma", Fixed("N"), One, card("Thrust", "σ")),
+            Signal::ThrustRate => Row::new("d_sigma", Fixed("N/s"), One, card("Rate of the thrust", "σ̇, as asked for")).jumps(),
+            Signal::Acceleration => Row::new("ddx", Axis(2), Axes, card("Measured acceleration", "ẍ")),
             Signal::Heading => Row::new("heading", Fixed("rad"), One, card("Heading", "about the vertical")),
             Signal::Angle => Row::new("angle", Fixed("rad"), One, card("Angle to the target’s attitude", "from 0 to π")),
             Signal::WheelTorque => Row::new("wheel_torque", Fixed("N m"), Numbered("wheel"), card("Torques of the wheels", "u, after any limit")).jumps(),

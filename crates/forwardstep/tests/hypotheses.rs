@@ -15,7 +15,7 @@ use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
 use forwardstep::sim::leader::{Following, FollowingDesign};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
-use forwardstep::sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, TaskSpaceLaw};
+use forwardstep::sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw};
 
 fn shipped(name: &str) -> Setup {
     open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
@@ -92,6 +92,51 @@ fn filtered_spacecraft() -> Setup {
     setup
 }
 
+/// Vehicles whose accelerometers have this bias.
+fn by_acceleration(bias: [f64; 3]) -> Setup {
+    let mut setup = shipped("theorem-5");
+    for agent in &mut setup.agents {
+        agent.roots_per_s.real.pop();
+        assert!(agent.change_law(|law: &mut ThrustLaw| {
+            let (alpha_star, gamma_star, estimate_start) = (3.0, 0.2, 1.2);
+            law.design = ThrustKind::ByAcceleration { alpha_star, gamma_star, estimate_start, bounds: None, bias };
+        }));
+    }
+    setup
+}
+
+/// Its verdict is that of Theorem 5 but for whose it is and what a bias does: the proof asks for the same.
+#[test]
+fn own_vehicles_by_acceleration_ask_for_what_theorem_5_does_and_for_no_bias() {
+    let (measured, by_parts) = (check(&by_acceleration([0.0; 3])), check(&shipped("theorem-5")));
+    let asked = |report: &Report| -> Vec<(Id, Answer)> {
+        let others = report.hypotheses.iter().filter(|hypothesis| hypothesis.id != Id::UnbiasedAcceleration);
+        others.map(|hypothesis| (hypothesis.id, hypothesis.answer())).collect()
+    };
+    assert_eq!(asked(&measured), asked(&by_parts));
+    assert_eq!(measured.theorem.source(), forwardstep::check::Source::Derived);
+    assert!(measured.theorem.to_string().starts_with("no theorem of the paper"), "{}", measured.theorem);
+    let bias = |setup: &Setup| {
+        let report = check(setup);
+        let found = report.hypotheses.iter().filter(|hypothesis| hypothesis.id == Id::UnbiasedAcceleration);
+        let found: Vec<_> = found.map(|hypothesis| (hypothesis.answer(), hypothesis.because())).collect();
+        assert_eq!(found.len(), 1);
+        found[0].clone()
+    };
+    assert_eq!(bias(&by_acceleration([0.0; 3])).0, Answer::Holds);
+    // Roots 1 and 1.5: between e/2.5 and 2.5 e/1.5.
+    for (e, words) in
+        [(0.3, "rise together for ever, at 0.12 to 0.5 m/s"), (-0.3, "sink together for ever, at 0.12 to 0.5 m/s")]
+    {
+        let (answer, reason) = bias(&by_acceleration([0.0, 0.0, e]));
+        assert!(answer == Answer::NotCovered && reason.contains(words), "{reason}");
+    }
+    let mut one = by_acceleration([0.0; 3]);
+    one.agents[2] = by_acceleration([0.1, 0.0, 0.0]).agents[2].clone();
+    let (answer, reason) = bias(&one);
+    assert!(answer == Answer::NotCovered && reason.contains("vehicle-3") && !reason.contains("together"), "{reason}");
+}
+
 /// Robots with reference dynamics of different orders.
 fn own_orders() -> Setup {
     let mut setup = shipped("theorem-3-24-order-4");
@@ -131,6 +176,7 @@ fn reports() -> Vec<Report> {
         filtered_spacecraft(),
         own_orders(),
         by_velocity(),
+        by_acceleration([0.0; 3]),
         observed(),
         desired("desired-dynamics", |desired| desired.heard = vec![1.0]),
     ];
@@ -181,6 +227,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "theorem-8-late",
         "theorem-8-switching",
         "theorem-9",
+        "thrust-by-acceleration",
         "tip-velocity",
     ];
     assert_eq!(theorems, names.into());

@@ -235,6 +235,8 @@ pub struct Interface {
     pub coordinates: Option<Coordinates>,
     /// Lengths of what else of the law's own state a start may give, after as many of z(0), ż(0), … as its reference dynamics have.
     pub further_starts: &'static [usize],
+    /// Where what the plant has beside the robot starts: actuators with states of their own, behind those of the robot.
+    pub actuator_start: Vec<f64>,
     /// Values to compare its signals with.
     pub lines: Vec<Line>,
 }
@@ -255,6 +257,7 @@ impl Interface {
             in_batches: false,
             coordinates: None,
             further_starts: &[],
+            actuator_start: Vec::new(),
             lines: Vec::new(),
         }
     }

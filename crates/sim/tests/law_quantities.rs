@@ -50,6 +50,19 @@ fn numbers_of_thrust_laws_are_refused_under_their_keys() {
                 law.design = ThrustKind::Adaptive { alpha_star, gamma_star, estimate_start, bounds: None }
             })
         };
+        let measured = |numbers: [f64; 3], bias: f64| {
+            let [alpha_star, gamma_star, estimate_start] = numbers;
+            changed(&known, &|law| {
+                let bias = [0.0, bias, 0.0];
+                law.design = ThrustKind::ByAcceleration { alpha_star, gamma_star, estimate_start, bounds: None, bias }
+            })
+        };
+        assert_eq!(measured([bad, 1.0, 1.0], 0.0), "agents[0].law.design.by_acceleration.damping_per_s");
+        assert_eq!(measured([1.0, bad, 1.0], 0.0), "agents[0].law.design.by_acceleration.adaptation_gain");
+        assert_eq!(measured([1.0, 1.0, bad], 0.0), "agents[0].law.design.by_acceleration.estimate_start_kg");
+        if !bad.is_finite() {
+            assert_eq!(measured([1.0; 3], bad), "agents[0].law.design.by_acceleration.bias_m_s2[1]");
+        }
         assert_eq!(adapted(bad, 1.0, 1.0), "agents[0].law.design.adaptive.damping_per_s");
         assert_eq!(adapted(1.0, bad, 1.0), "agents[0].law.design.adaptive.adaptation_gain");
         assert_eq!(adapted(1.0, 1.0, bad), "agents[0].law.design.adaptive.estimate_start_kg");

@@ -77,6 +77,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::KnownMasses, text),
     (Id::KnownMomentum, text),
     (Id::TargetAtRest, text),
+    (Id::UnbiasedAcceleration, text),
     (Id::SmoothFriction, text),
     (Id::ParametersWithinBounds, bounds),
 ];

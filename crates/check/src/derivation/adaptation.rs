@@ -66,7 +66,7 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
             }
             vec![filtered, (gradient(estimate, gain, factors), "after (a9)")]
         }
-        Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => {
+        Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => {
             let number = |number: &BigRational| Polynomial::number(number.clone());
             let w = Combination::of(
                 Quantity::own(Letter::Reference),

@@ -101,6 +101,15 @@ pub enum ThrustStep {
     Differentiable,
     /// (57).
     Adaptive,
+    /// The same with a measured acceleration.
+    ByAcceleration,
+}
+
+impl ThrustStep {
+    /// Whether the mass is adapted.
+    pub fn adapts(self) -> bool {
+        matches!(self, ThrustStep::Adaptive | ThrustStep::ByAcceleration)
+    }
 }
 
 /// Which second step of Section IV.
@@ -129,6 +138,9 @@ impl Step {
                     (ThrustStep::Differentiable, [alpha_star, stiffness])
                 }
                 ThrustKind::Adaptive { alpha_star, gamma_star, .. } => (ThrustStep::Adaptive, [alpha_star, gamma_star]),
+                ThrustKind::ByAcceleration { alpha_star, gamma_star, .. } => {
+                    (ThrustStep::ByAcceleration, [alpha_star, gamma_star])
+                }
             };
             Step::Thrust(step, numbers.map(Number::written))
         } else if let Some(law) = agent.law.downcast::<AttitudeLaw>() {
@@ -307,6 +319,12 @@ impl Case<'_> {
     /// Whether estimates of ϑ are kept within bounds.
     pub fn is_bounded(&self) -> bool {
         self.agents.iter().any(|agent| self.setup.agents[*agent].law.kept_within().is_some())
+    }
+
+    /// Whether an accelerometer gives too much.
+    pub fn is_biased(&self) -> bool {
+        let laws = self.agents.iter().filter_map(|agent| self.setup.agents[*agent].law.downcast::<ThrustLaw>());
+        laws.into_iter().any(|law| matches!(law.design, ThrustKind::ByAcceleration { bias, .. } if bias != [0.0; 3]))
     }
 
     /// Whether estimates of lengths are.

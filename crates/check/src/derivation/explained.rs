@@ -112,7 +112,7 @@ impl Case<'_> {
             Step::PositionOnly([k, _]) => lower::position_only(self.outside(), k),
             Step::Thrust(ThrustStep::Continuous, _) | Step::Outside(_) => return None,
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
-            Step::Thrust(ThrustStep::Adaptive, [alpha, _]) => lower::thrust(alpha, None),
+            Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
             Step::PassivityFilter(k) => lower::passivity_filter(self.outside(), k),
             Step::TaskSpace([kappa, _]) | Step::TipVelocity([kappa, _]) => {
@@ -159,8 +159,12 @@ impl Case<'_> {
         let (reduction, reduced) = self.reduction(&upper, dynamics, (&notation, &places));
         let degrees = [dynamics.upper().degree(lower_order), reduced.as_ref().map_or(0, |r| r.degree(lower_order))];
         let left = reduced.as_ref().map_or(0, |reduced| reduced.derivatives);
+        let mut control = virtual_control(dynamics, &notation, &places);
+        if let Step::Thrust(ThrustStep::ByAcceleration, _) = self.step {
+            control = control.words(words::BY_ACCELERATION);
+        }
         let mut sections = vec![
-            virtual_control(dynamics, &notation, &places),
+            control,
             self.reference(dynamics, &notation, &places),
             self.controller(&notation, &places),
             self.cascade(dynamics, degrees[0], (&notation, &places)),

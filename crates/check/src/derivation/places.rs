@@ -147,6 +147,15 @@ fn own_step(case: &Case<'_>, order: usize, places: Places) -> Places {
             laplacian: "",
             ..places
         },
+        Step::Thrust(ThrustStep::ByAcceleration, _) => Places {
+            identity: "",
+            error: "before Theorem 4",
+            plant: "(47)",
+            law: "(57)",
+            cascade: "",
+            reduced: "",
+            ..places
+        },
         Step::Thrust(step, _) => Places {
             identity: "",
             error: "before Theorem 4",

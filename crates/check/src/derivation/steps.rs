@@ -89,7 +89,7 @@ impl Case<'_> {
                 | Led::Outside(..)
                 | Led::Refuted(..),
                 Step::Robot { .. }
-                | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive, _)
+                | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive | ThrustStep::ByAcceleration, _)
                 | Step::Attitude(_)
                 | Step::PassivityFilter(_)
                 | Step::TaskSpace(_)

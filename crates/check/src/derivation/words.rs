@@ -74,6 +74,10 @@ pub(super) fn links(setup: &Setup, heard: At) -> String {
     format!("{size}{graph}; {late}.")
 }
 
+/// Whose a law by a measured acceleration is, and why it needs one.
+pub(super) const BY_ACCELERATION: &str = "Not from the paper, but in the manner of the literature with which Remark 8 compares Theorem 5: the acceleration is \
+     measured. With reference dynamics of one order more (58) can be integrated by parts, and no acceleration is needed.";
+
 /// What the law makes of s.
 pub(super) fn of_s(case: &Case<'_>) -> String {
     match &case.step {
@@ -88,14 +92,18 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
         Step::Thrust(ThrustStep::Differentiable, _) => {
             "The lower subsystem is linear and exponentially stable, and nothing drives it: s* → 0 with its derivatives."
         }
-        Step::Thrust(ThrustStep::Adaptive, _) if case.is_bounded() => {
+        Step::Thrust(ThrustStep::ByAcceleration, _) if case.is_biased() => {
+            "V = ½ m ṡ*ᵀṡ* + Δm²/(2γ*) has V̇ = −α* m ṡ*ᵀṡ* − Δm wᵀe, where e is the bias of an accelerometer. The last term has no sign, and \
+             nothing of what follows is shown: ṡ* need not vanish."
+        }
+        Step::Thrust(step, _) if step.adapts() && case.is_bounded() => {
             return clamped(
                 "V = ½ m ṡ*ᵀṡ*",
                 "V̇ ≤ −α* m ṡ*ᵀṡ*",
                 "So ṡ* is bounded and square-integrable; s* itself need not vanish.",
             );
         }
-        Step::Thrust(ThrustStep::Adaptive, _) => {
+        Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, _) => {
             "V = ½ m ṡ*ᵀṡ* + Δm²/(2γ*) has V̇ = −α* m ṡ*ᵀṡ* whatever z does. So ṡ* is bounded and square-integrable, and m̂ is \
              bounded; s* itself need not vanish."
         }
@@ -197,7 +205,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
     let s = letter(input, matches!(case.step, Step::Thrust(..)));
     let q = case.notation().position;
     let enters = match (&case.step, left) {
-        (Step::Thrust(ThrustStep::Adaptive, _), _) => {
+        (Step::Thrust(step, _), _) if step.adapts() => {
             "The upper subsystem is then driven by ṡ* alone, which is square-integrable.".to_owned()
         }
         (_, 0) => format!("The upper subsystem is then driven by {s} alone, without any derivative."),

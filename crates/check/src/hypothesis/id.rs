@@ -146,6 +146,8 @@ table! {
         "α*, k and γ* are positive, and a mass that is not adapted is known";
     NonzeroThrust, "nonzero-thrust", "(45)", Source::Paper,
         "no thrust comes to zero";
+    UnbiasedAcceleration, "unbiased-acceleration", "own derivation", Source::Derived,
+        "accelerometers give the acceleration";
     AngularVelocity, "angular-velocity", "(44)", Source::Paper,
         "the angular velocity is the one that the law asks for";
     EveryWrench, "every-wrench", "own derivation", Source::Derived,

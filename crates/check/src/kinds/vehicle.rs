@@ -1,6 +1,7 @@
 //! Vehicles with one thrust whose angular velocity is an input: (44)–(58), Theorems 4 and 5.
 
 use forwardstep_core::controller::Floor;
+use forwardstep_core::reference::polynomial;
 use forwardstep_sim::{AgentSetup, Setup, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::bounds::within_bounds;
@@ -47,6 +48,7 @@ pub(super) fn treated(agent: &AgentSetup) -> &'static str {
         Some(ThrustKind::Continuous) | None => "Section V-B with (46)",
         Some(ThrustKind::Differentiable { .. }) => "Theorem 4",
         Some(ThrustKind::Adaptive { .. }) => "Theorem 5",
+        Some(ThrustKind::ByAcceleration { .. }) => "thrust by a measured acceleration",
     }
 }
 
@@ -59,6 +61,7 @@ pub(super) fn claim(setup: &Setup) -> Option<Claim> {
         ThrustKind::Continuous => (Theorem::ContinuousThrust, JUMPS),
         ThrustKind::Differentiable { .. } => (Theorem::Theorem4, SMOOTH),
         ThrustKind::Adaptive { .. } => (Theorem::Theorem5, SMOOTH),
+        ThrustKind::ByAcceleration { .. } => (Theorem::ThrustByAcceleration, JUMPS),
     };
     let agreed = if setup.agents.iter().any(|agent| agent.target.is_some()) {
         "with y = x − offset all vehicles agree on y, and it comes to rest: y_i − y_j → 0 and dy_i → 0"
@@ -71,7 +74,27 @@ pub(super) fn claim(setup: &Setup) -> Option<Claim> {
 /// What the outer law asks for, with or without a body.
 pub(super) fn outer_law(setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
     let always = [gains(setup, agents), thrust(setup, agents)];
-    always.into_iter().chain(within_bounds(setup, agents)).collect()
+    always.into_iter().chain(unbiased(setup, agents)).chain(within_bounds(setup, agents)).collect()
+}
+
+/// What is known of accelerometers, where there are any.
+fn unbiased(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
+    let biases = with_laws(setup, agents).filter_map(|(index, agent, law)| match law.design {
+        ThrustKind::ByAcceleration { bias, .. } => Some((index, agent, bias)),
+        ThrustKind::Continuous | ThrustKind::Differentiable { .. } | ThrustKind::Adaptive { .. } => None,
+    });
+    let mut evidence = None;
+    for (index, agent, bias) in biases {
+        if bias != [0.0; 3] {
+            // p² + (α+β) p + αβ: ẋ₃ of the head of `accelerated` with d from zero to infinity.
+            let roots = polynomial(&agent.roots_per_s).ok().filter(|of| of.len() > 1 && of[0] > 0.0 && bias[2] != 0.0);
+            let drift_m_s = roots.map(|of| [bias[2] / of[1], bias[2] * of[1] / of[0]]);
+            evidence = Some(KindEvidence::AccelerationBiased { agent: Named::of(setup, index), drift_m_s });
+            break;
+        }
+        evidence = Some(KindEvidence::AccelerationUnbiased);
+    }
+    evidence.map(|evidence| Hypothesis::new(Id::UnbiasedAcceleration, evidence))
 }
 
 /// Agents with their laws.
@@ -86,11 +109,8 @@ pub(super) fn with_laws<'a>(
 }
 
 fn gains(setup: &Setup, agents: &[usize]) -> Hypothesis {
-    let keeps_a_wrong_mass = |agent: &AgentSetup, law: &ThrustLaw| match law.design {
-        ThrustKind::Adaptive { gamma_star, estimate_start, .. } => {
-            gamma_star == 0.0 && agent.robot.theta.first() != Some(&estimate_start)
-        }
-        ThrustKind::Continuous | ThrustKind::Differentiable { .. } => false,
+    let keeps_a_wrong_mass = |agent: &AgentSetup, law: &ThrustLaw| {
+        law.design.adaptation() == Some(0.0) && agent.robot.theta.first().copied() != law.design.estimate_start()
     };
     if with_laws(setup, agents).all(|(_, _, law)| law.design == ThrustKind::Continuous) {
         return Hypothesis::new(Id::KnownMasses, KindEvidence::MassOfPlant);

@@ -107,7 +107,7 @@ pub(super) fn covered(
 ///
 /// With N − 1 roots and a plant of order k, z follows the (k − 1)-th derivative, ℓ = N − k + 1, and the input reads up to ż:
 /// ℓ − 1 = roots + 1 − k, as (43) says. Of a vehicle with one thrust ω reads z̈ through (50) and the virtual control itself through (46), one derivative
-/// more than the torques of robots, and σ is an integral of what ω reads. Where an inner loop turns the vehicle, and of laws and reference dynamics from
+/// more than the torques of robots, as does σ̇ where that is the input, and σ is an integral of what ω reads. Where an inner loop turns the vehicle, and of laws and reference dynamics from
 /// outside, nothing is promised.
 fn continuous(setup: &Setup, agent: usize, signal: Signal) -> Option<usize> {
     let own = &setup.agents[agent];
@@ -125,7 +125,7 @@ fn continuous(setup: &Setup, agent: usize, signal: Signal) -> Option<usize> {
         Some((order + 1).saturating_sub(model.order()))
     } else if own.law.is::<ThrustLaw>() && signal == Signal::Thrust {
         Some(order.saturating_sub(1))
-    } else if own.law.is::<ThrustLaw>() && signal == Signal::AngularVelocity {
+    } else if own.law.is::<ThrustLaw>() && matches!(signal, Signal::AngularVelocity | Signal::ThrustRate) {
         Some(order.saturating_sub(2))
     } else {
         None

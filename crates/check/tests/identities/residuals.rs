@@ -7,8 +7,9 @@ use std::sync::Arc;
 use forwardstep_check::derivation::Subject;
 use forwardstep_check::derivation::residual::{Missing, Residual, Residuals};
 use forwardstep_core::Gain;
+use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
-use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::{Wheel, Wheels};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};
 use forwardstep_core::robot::{Drives, Friction};
@@ -17,7 +18,9 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, SpacecraftModel, simulate, simulate_moments};
+use forwardstep_sim::{
+    Adaptive, Exchange, PassivityFilterLaw, Setup, SpacecraftModel, ThrustKind, simulate, simulate_moments,
+};
 
 use super::families::own_start;
 use crate::common::{arm, edge, kinds, noise, setup};
@@ -254,6 +257,21 @@ fn masses_without_velocity_spacecraft_and_chains_have_identities_of_their_own() 
     let [flat, lighter] = [10.0, 9.99].map(|first| with([[first, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 6.0]]));
     assert_eq!(noticed(&flat, &flat), [""; 0]);
     assert!(noticed(&lighter, &flat).contains(&"(94)"), "{:?}", noticed(&lighter, &flat));
+
+    let measured = |estimate_start: f64, gamma_star: f64, bounds| {
+        let design =
+            ThrustKind::ByAcceleration { alpha_star: 3.0, gamma_star, estimate_start, bounds, bias: [0.1, 0.0, -0.2] };
+        let mut vehicle = short(kinds::alone(kinds::vehicle(design, Floor::Stops(1.0))));
+        vehicle.agents[0].start.dq = vec![0.4, -0.2, 0.1];
+        vehicle
+    };
+    let within = Some(Range { lower: 1.8, upper: 2.5 });
+    for bounds in [None, within] {
+        let vehicle = measured(1.6, 0.2, bounds);
+        assert_eq!(noticed(&vehicle, &vehicle), [""; 0]);
+        assert_eq!(noticed(&measured(1.6, 0.201, bounds), &vehicle), ["(58)"]);
+    }
+    assert_eq!(noticed(&measured(1.6, 0.2, None), &measured(1.6, 0.2, within)), ["(58)"]);
 
     let mut chain = short(kinds::alone(kinds::chain(&Expression::number(2.0), 1, true)));
     chain.agents[0].start.dq = vec![0.5];

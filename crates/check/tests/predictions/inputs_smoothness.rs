@@ -131,6 +131,20 @@ fn thm4_5_the_thrust_of_a_vehicle_is_one_derivative_smoother_than_its_angular_ve
     }
 }
 
+/// What (49), of order three, has before a measured acceleration with order two.
+#[test]
+fn own_by_a_measured_acceleration_the_rate_of_the_thrust_jumps_as_the_angular_velocity_does() {
+    let design = ThrustKind::ByAcceleration {
+        alpha_star: 3.0,
+        gamma_star: 0.2,
+        estimate_start: 1.6,
+        bounds: None,
+        bias: [0.0; 3],
+    };
+    let setup = three(2, &|| vehicle(design, Floor::Stops(0.1)));
+    keeps(&compare(&setup, 2, false), &[input(Signal::AngularVelocity, 0), input(Signal::ThrustRate, 0)]);
+}
+
 #[test]
 fn a_rotorcraft_is_promised_its_thrust_and_its_torque_is_reported() {
     for (design, continuous) in designs() {

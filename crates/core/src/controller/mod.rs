@@ -14,7 +14,7 @@
 //! - `guide`: where z leads, for plants of any order.
 //! - `passivity_filter`: a spacecraft by a filter of its attitude error, without reference dynamics, beside Theorem 7.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
-//! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques.
+//! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques; and beside it, by a measured acceleration.
 //! - `stepped`: any controller, sampled.
 //! - `task_space`: (76)–(82), the tip of a robot with uncertain lengths, without its velocity; and beside it, with a measured one.
 
@@ -52,7 +52,10 @@ pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
 pub use task_space::{NullSpace, TaskMeasured, TaskMotionMeasured, TaskSpace, TaskSpaceByVelocity};
-pub use thrust::{Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustCascade, ThrustDesign, Yaw};
+pub use thrust::{
+    AccelerationMeasured, Floor, RateLoop, RotorcraftMeasured, Thrust, ThrustByAcceleration, ThrustCascade,
+    ThrustDesign, Yaw,
+};
 pub use vector_linearising::{VectorLinearising, VectorLinearisingWork};
 
 use alloc::vec::Vec;

@@ -2,7 +2,7 @@
 //!
 //! - `mechanical`: (1), a robot.
 //! - `chain`, `vector_chain`: (33) with one axis and with several.
-//! - `vehicle`: (44), a thrust-propelled vehicle.
+//! - `vehicle`: (44), a thrust-propelled vehicle, and one that measures its acceleration.
 //! - `rotorcraft`: the same as a rigid body with torques and rotors.
 
 mod cascade;
@@ -23,7 +23,7 @@ pub use spacecraft::{Spacecraft, SpacecraftError, Wheel, Wheels};
 pub use task_arm::{TaskArm, WatchedTaskArm, WatchedTaskWork};
 pub use vector_chain::{VectorChain, VectorFormulas, VectorFormulasWork};
 pub use vector_field::VectorField;
-pub use vehicle::{Vehicle, VehicleState};
+pub use vehicle::{AcceleratedVehicle, Vehicle, VehicleState};
 
 use alloc::vec::Vec;
 

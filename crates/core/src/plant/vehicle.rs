@@ -147,6 +147,84 @@ impl Plant for Vehicle {
     }
 }
 
+/// A thrust-propelled vehicle with an accelerometer, the thrust of which has a rate. State: x, ẋ, (q_v, q_o), σ. Output: the same, and the
+/// measured ẍ behind it. Input: σ̇, ω. From outside: f, of which the output has nothing.
+///
+/// ẍ follows σ at once; as a state of the plant σ is there before anything is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AcceleratedVehicle {
+    /// The vehicle with its true mass.
+    pub vehicle: Vehicle,
+    /// What the accelerometer gives too much, in the inertial frame, m/s².
+    pub bias: [f64; 3],
+}
+
+/// Numbers in its state: those of [`VehicleState`], and σ.
+const WITH_THRUST: usize = VehicleState::LEN + 1;
+
+impl Plant for AcceleratedVehicle {
+    type Scratch = ();
+
+    fn scratch(&self) {}
+
+    fn axes(&self) -> usize {
+        3
+    }
+
+    fn states(&self) -> Vec<Block> {
+        vec![(Signal::Position, 3), (Signal::Velocity, 3), (Signal::Attitude, 4), (Signal::Thrust, 1)]
+    }
+
+    fn inputs(&self) -> Vec<Block> {
+        vec![(Signal::ThrustRate, 1), (Signal::AngularVelocity, 3)]
+    }
+
+    fn outputs(&self) -> Vec<Block> {
+        let mut outputs = self.states();
+        outputs.push((Signal::Acceleration, 3));
+        outputs
+    }
+
+    fn output_len(&self) -> usize {
+        WITH_THRUST + 3
+    }
+
+    fn output(&self, (): &mut (), state: &[f64], output: &mut [f64]) -> Result<(), LengthError> {
+        LengthError::check("state", WITH_THRUST, state.len())?;
+        LengthError::check("output", self.output_len(), output.len())?;
+        let (same, measured) = output.split_at_mut(WITH_THRUST);
+        same.copy_from_slice(state);
+        let ddx = self.vehicle.acceleration(*VehicleState::read(state)?.0.attitude, state[WITH_THRUST - 1]);
+        for ((measured, ddx), bias) in measured.iter_mut().zip(ddx).zip(self.bias) {
+            *measured = ddx + bias;
+        }
+        Ok(())
+    }
+
+    fn limit(&self, _: &[f64], _: &mut [f64]) {}
+
+    fn rate(
+        &self,
+        (): &mut (),
+        state: &[f64],
+        input: &[f64],
+        external: &[f64],
+        d_state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        LengthError::check("state", WITH_THRUST, state.len())?;
+        LengthError::check("rate", WITH_THRUST, d_state.len())?;
+        LengthError::check("input", 4, input.len())?;
+        let (own, d_own) = (&state[..VehicleState::LEN], &mut d_state[..VehicleState::LEN]);
+        self.vehicle.rate(&mut (), own, &[state[WITH_THRUST - 1], input[1], input[2], input[3]], external, d_own)?;
+        d_state[WITH_THRUST - 1] = input[0];
+        Ok(())
+    }
+
+    fn settle(&self, state: &mut [f64]) {
+        settle(state);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,6 +244,25 @@ mod tests {
         state[6..].copy_from_slice(&[0.0, half, 0.0, half]);
         vehicle.rate(&mut (), &state, &[1.7, 0.0, 0.0, 0.0], &[], &mut rate).unwrap();
         assert!((rate[3] + 1.0).abs() < 1e-15 && (rate[5] - 9.81).abs() < 1e-15, "{rate:?}");
+    }
+
+    #[test]
+    fn eq_44_an_accelerometer_gives_the_rate_of_the_velocity_and_a_rate_moves_the_thrust() {
+        let mut vehicle = AcceleratedVehicle { vehicle: Vehicle { mass: 1.7, gravity: 9.81 }, bias: [0.0; 3] };
+        let state = [1.0, 2.0, -3.0, 0.1, 0.2, 0.3, 0.1, -0.2, 0.1, 0.97, 12.0];
+        let (mut output, mut rate) = ([0.0; 14], [0.0; 11]);
+        vehicle.output(&mut (), &state, &mut output).unwrap();
+        vehicle.rate(&mut (), &state, &[-4.0, 0.3, 0.2, 0.1], &[], &mut rate).unwrap();
+        assert_eq!((&output[..11], &output[11..], rate[10]), (&state[..], &rate[3..6], -4.0));
+        let mut whole = [0.0; 10];
+        vehicle.vehicle.rate(&mut (), &state[..10], &[12.0, 0.3, 0.2, 0.1], &[], &mut whole).unwrap();
+        assert_eq!(rate[..10], whole);
+        vehicle.bias = [0.1, 0.0, -0.2];
+        vehicle.output(&mut (), &state, &mut output).unwrap();
+        assert_eq!([output[11], output[12], output[13]], [rate[3] + 0.1, rate[4], rate[5] - 0.2]);
+        assert!(vehicle.output(&mut (), &state[1..], &mut output).is_err());
+        assert!(vehicle.rate(&mut (), &state, &[0.0; 3], &[], &mut rate).is_err());
+        assert!(vehicle.rate(&mut (), &state, &[0.0; 4], &[1.0], &mut rate).is_err());
     }
 
     #[test]

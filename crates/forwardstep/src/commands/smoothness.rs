@@ -231,6 +231,7 @@ fn letter(signal: Signal) -> String {
     match signal {
         Signal::Torque => "τ".into(),
         Signal::Thrust => "σ".into(),
+        Signal::ThrustRate => "σ̇".into(),
         Signal::AngularVelocity => "ω".into(),
         other => other.name(),
     }

@@ -1,9 +1,10 @@
 //! Certificates of the cases beside the checker: desired dynamics by coefficients, and networks that were logged.
 
 use std::fs;
+use std::path::Path;
 
 use super::support::folder;
-use super::{certified, changed, checked, judged, root};
+use super::{certified, changed, checked, judged, python, root};
 
 fn case(name: &str) -> String {
     fs::read_to_string(root().join(format!("checker/cases/{name}"))).unwrap()
@@ -23,6 +24,30 @@ fn polynomials_of_targets_are_certified_by_the_array_of_routh() {
     is("[0.1, 0.7, 1.3, 0.9]", "holds");
     is("[66, 11, 6]", "violated");
     is("{ integrators = 1, roots_per_s = [1, { real = 0.3, imaginary = 0.7 }] }", "violated");
+}
+
+/// A bias is not a claim, and no certificate of a vehicle without one is one of a vehicle with it.
+#[test]
+fn accelerometers_without_a_bias_are_certified() {
+    let text = case("by-acceleration.toml");
+    for id in ["unbiased-acceleration", "thrust-gains", "parameters-within-bounds"] {
+        assert_eq!(judged(&text, id), ("holds".to_owned(), "accepted".to_owned()), "{id}");
+    }
+    let biased = text.replace("[0, 0.0, 0]", "[0, 0.0, 0.01]");
+    let (answer, verdict) = judged(&biased, "unbiased-acceleration");
+    assert_eq!([answer.as_str(), verdict.as_str()], ["not covered by the paper", "could not check"]);
+    let wrong = text.replace("adaptation_gain = 0.2", "adaptation_gain = 0").replace(", bounds.within = 0.4", "");
+    assert_ne!(judged(&wrong, "thrust-gains").0, "holds");
+
+    let folder = folder();
+    let [own, other] = ["own.toml", "other.toml"].map(|name| folder.path().join(name));
+    fs::write(&own, &text).unwrap();
+    fs::write(&other, &biased).unwrap();
+    let certificate = certified(own.to_str().unwrap(), folder.path());
+    let files = [&certificate, &other].map(|file| file.to_str().unwrap());
+    let output = python(&["forwardstep_checker.py", files[0], files[1], "--ignore-digests"], Path::new(""));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("rejected: unbiased-acceleration") && !output.status.success(), "{said}");
 }
 
 #[test]

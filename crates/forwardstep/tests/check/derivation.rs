@@ -91,6 +91,28 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
     }
 }
 
+/// (57) and (58) by a measured acceleration, with and without a bias and bounds.
+#[test]
+fn own_equations_of_vehicles_by_their_acceleration_hold_along_their_run() {
+    let text = forwardstep::io::scenario::shipped_scenario("theorem-5").unwrap().text;
+    let text =
+        text.replace("roots_per_s = [1.0, 1.5, 2.0]", "roots_per_s = [1.0, 1.5]").replace("end_s = 60", "end_s = 5");
+    for more in ["", ", bounds.within = 0.3", ", bias_m_s2 = [0.1, 0, 0.2]"] {
+        let own = format!("estimate_start_kg = 1.2{more}");
+        let folder =
+            with(&text.replace("design.adaptive", "design.by_acceleration").replace("estimate_start_kg = 1.2", &own));
+        let words = stdout(&forwardstep(&folder, &["explain", "two.toml"]).success());
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains("cascade is of degree 1") && words.contains("Not from the paper"), "{words}");
+        assert_eq!(words.contains("nothing of what follows is shown"), more.contains("bias"), "{words}");
+        let found = stdout(&forwardstep(&folder, &["explain", "two.toml", "--along"]).success());
+        assert!(!found.contains("NO ROUNDING"), "{found}");
+        for equation in ["(24)", "(57)", "(58)", "(30)"] {
+            assert!(words.contains(equation), "{equation}: {words}");
+        }
+    }
+}
+
 /// z and ż as functions, the law and the adaptation, by an evaluation of their own; a planar arm and one from a URDF.
 #[test]
 fn own_equations_of_a_tip_by_its_velocity_hold_along_its_run() {

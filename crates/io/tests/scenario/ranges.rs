@@ -98,6 +98,12 @@ fn rest() -> Vec<String> {
     let stated = [("\"continuous\"", "\"differentiable\""), ("roots_per_s = [1.5]", "alpha = 2\nbeta = 3")];
     all.push(stated.iter().fold(FOLLOWERS.to_owned(), |text, (from, to)| text.replace(from, to)));
     all.push(TIP.replace("task_gain = 200", watched).replace("[goal]", noisy));
+    // Without the rotorcraft, which the law is not made for.
+    let (vehicles, rest) = VEHICLES.split_once("[[agents]]\nname = \"rotor\"").unwrap();
+    let rest = rest.split_once("[reference.consensus]").unwrap().1.replace("rate_bandwidth_per_s = 30\n", "");
+    let by_acceleration = "design.by_acceleration = { damping_per_s = 3, adaptation_gain = 0.2, estimate_start_kg = 1.2, bias_m_s2 = [0, 0, 0.1] }";
+    let rest = rest.replace("design.differentiable = { damping_per_s = 3, stiffness = 4 }", by_acceleration);
+    all.push(format!("{vehicles}[reference.consensus]{}", rest.replace("[1.0, 1.5, 2.0]", "[1.0, 1.5]")));
     all.extend([ARMS, FOLLOWERS].map(str::to_owned));
     all
 }

@@ -272,6 +272,7 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
         estimates,
         in_batches: true,
         coordinates: None,
+        actuator_start: Vec::new(),
         further_starts: &[],
         lines: Vec::new(),
     })

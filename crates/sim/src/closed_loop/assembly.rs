@@ -252,11 +252,12 @@ impl<'a> Assembly<'a> {
     /// [`SetupError`] when the start, the target or the limits do not suit them.
     pub fn solo<C: Controller>(&self, plant: C::Plant, controller: C) -> Result<Block, SetupError> {
         let (setup, own) = (self.setup, self.agent());
-        let start = &own.start;
+        let (start, interface) = (&own.start, own.interface());
+        let actuators = interface.as_ref().map_or(0, |interface| interface.actuator_start.len());
         self.length(
             self.of_agent(),
             "start",
-            total(&plant.states()),
+            total(&plant.states()).saturating_sub(actuators),
             start.q.len() + start.dq.len() + start.rest.len(),
         )?;
         self.takes_pushes(&plant)?;
@@ -265,7 +266,7 @@ impl<'a> Assembly<'a> {
             .iter()
             .filter(|(signal, _)| matches!(signal, Signal::Reference(_) | Signal::ReferenceIntegral(_)))
             .count();
-        let vectors = vectors + own.interface().map_or(0, |law| law.further_starts.len());
+        let vectors = vectors + interface.map_or(0, |law| law.further_starts.len());
         if start.reference.len() > vectors {
             return Err(too_many(own, vectors, start.reference.len()));
         }

@@ -144,6 +144,7 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("vehicles-continuous", vehicles::three(&vehicle, ThrustKind::Continuous, false, 4.0)),
         ("vehicles-differentiable", vehicles::three(&vehicle, vehicles::DIFFERENTIABLE, true, 4.0)),
         ("vehicles-adaptive", vehicles::three(&vehicle, vehicles::ADAPTIVE, false, 4.0)),
+        ("vehicles-by-acceleration", vehicles::three(&vehicle, vehicles::by_acceleration([0.0, 0.1, -0.2]), true, 4.0)),
         ("rotorcraft", vehicles::three(&vehicles::rotorcraft(), vehicles::ADAPTIVE, true, 4.0)),
         ("tip-of-a-planar-arm", single::planar(None, 0.3)),
         ("tip-of-a-tree", single::anthropomorphic(Uncertain::Chain)),

@@ -16,6 +16,12 @@ pub const G: f64 = 9.81;
 pub const DIFFERENTIABLE: ThrustKind = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
 pub const ADAPTIVE: ThrustKind =
     ThrustKind::Adaptive { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8, bounds: None };
+pub const BY_ACCELERATION: ThrustKind = by_acceleration([0.0; 3]);
+
+/// By a measured acceleration with a bias.
+pub const fn by_acceleration(bias: [f64; 3]) -> ThrustKind {
+    ThrustKind::ByAcceleration { alpha_star: 3.0, gamma_star: 0.2, estimate_start: 0.8, bounds: None, bias }
+}
 
 pub fn vehicle() -> Arc<dyn Robot> {
     Arc::new(VehicleModel { gravity: G })

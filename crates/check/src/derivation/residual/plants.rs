@@ -181,8 +181,13 @@ impl At<'_, '_> {
 
     /// (58) of a vehicle: m̂' + γ* wᵀṡ*, where m̂ is m̂(0) + I − γ* wᵀs*, from the rate of I; with bounds that is μ, which comes back.
     pub(super) fn vehicle_estimate(&mut self) -> Result<Vector, Missing> {
-        let Step::Thrust(ThrustStep::Adaptive, [alpha, gamma]) = &self.case.step else { return Err(Missing::Term) };
+        let Step::Thrust(step, [alpha, gamma]) = &self.case.step else { return Err(Missing::Term) };
         let (alpha, gamma) = (number(alpha), number(gamma));
+        match step {
+            ThrustStep::Adaptive => {}
+            ThrustStep::ByAcceleration => return self.mass_by_acceleration(alpha, gamma),
+            ThrustStep::Continuous | ThrustStep::Differentiable => return Err(Missing::Term),
+        }
         self.vehicle()?;
         let [dx, z, ddz, dddz] = [self.position(1)?, self.reference(0)?, self.reference(2)?, self.reference(3)?];
         let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
@@ -201,6 +206,30 @@ impl At<'_, '_> {
             let w = |k: usize| ddz[k] + offset[k][3] + alpha * (dz[k] + offset[k][2]) - weight(k);
             let ws: f64 = (0..3).map(|k| w(k) * (dx[k] - z[k] - offset[k][1])).sum();
             let back = alpha * range.beyond(estimate_start + integral[0] - gamma * ws);
+            sum[0] = [sum[0][0] + back, sum[0][1] + back.abs()];
+        }
+        Ok(sum)
+    }
+
+    /// m̂' + γ* wᵀṡ* by the recorded acceleration; with bounds μ comes back.
+    fn mass_by_acceleration(&self, alpha: f64, gamma: f64) -> Result<Vector, Missing> {
+        let (_, gravity) = self.vehicle()?;
+        let ddx = self.recorded(Signal::Acceleration).and_then(|ddx| ddx.first_chunk::<3>()).ok_or(Missing::Term)?;
+        let [dz, ddz] = [self.reference(1)?, self.reference(2)?];
+        let offset = self.target().unwrap_or_else(|| vec![[0.0; 5]; 3]);
+        let mut sum = exact(self.state(Signal::Estimate, true).ok_or(Missing::Term)?);
+        for k in 0..3 {
+            let ds = ddx[k] - dz[k] - offset[k][2];
+            let weight = if k == 2 { -alpha * gravity } else { 0.0 };
+            let w = [ddz[k], offset[k][3], alpha * dz[k], alpha * offset[k][2], weight];
+            for term in w.map(|w| gamma * w * ds) {
+                sum[0] = [sum[0][0] + term, sum[0][1] + term.abs()];
+            }
+        }
+        let law = self.case.setup.agents[self.moment.agent].law.downcast::<ThrustLaw>().map(|law| law.design);
+        if let Some((range, start)) = law.and_then(|law| law.bounds().zip(law.estimate_start())) {
+            let learnt = self.state(Signal::Estimate, false).ok_or(Missing::Term)?;
+            let back = alpha * range.beyond(start + learnt[0]);
             sum[0] = [sum[0][0] + back, sum[0][1] + back.abs()];
         }
         Ok(sum)

@@ -51,6 +51,15 @@ pub enum KindEvidence {
         /// The floor, N.
         floor_n: f64,
     },
+    /// Accelerometers give ẍ as it is.
+    AccelerationUnbiased,
+    /// One gives too much.
+    AccelerationBiased {
+        /// Whose.
+        agent: Named,
+        /// Between which speeds vehicles that all do so rise together for ever, m/s; nothing where the vertical has no bias.
+        drift_m_s: Option<[f64; 2]>,
+    },
     /// Torques turn a body into the angular velocity asked for.
     AngularRate {
         /// Whose is the slowest.
@@ -262,6 +271,7 @@ impl KindEvidence {
             | KindEvidence::Matched
             | KindEvidence::TargetStill
             | KindEvidence::EqualInertia
+            | KindEvidence::AccelerationUnbiased
             | KindEvidence::Momentum(_) => Answer::Holds,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
@@ -282,6 +292,7 @@ impl KindEvidence {
             | KindEvidence::LengthsInRegressor(_)
             | KindEvidence::LengthsNotAdapted { .. }
             | KindEvidence::MomentumPushed
+            | KindEvidence::AccelerationBiased { .. }
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
@@ -327,6 +338,8 @@ impl KindEvidence {
             | KindEvidence::TargetStill
             | KindEvidence::EqualInertia
             | KindEvidence::TurningTarget
+            | KindEvidence::AccelerationUnbiased
+            | KindEvidence::AccelerationBiased { .. }
             | KindEvidence::Matched
             | KindEvidence::Unmatched { .. }
             | KindEvidence::SafeCommand

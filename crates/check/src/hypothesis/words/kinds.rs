@@ -147,6 +147,18 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::TurningTarget => {
             "it may turn, and wheels leave V̇ = −ẏᵀΛ_f ẏ + ΔωᵀM S(Δω) ω_d, whose last term has no sign; a run may diverge".into()
         }
+        KindEvidence::AccelerationUnbiased => "they have no bias by the scenario".into(),
+        KindEvidence::AccelerationBiased { agent, drift_m_s } => {
+            let together = drift_m_s.map_or_else(String::new, |[slow, fast]| {
+                let way = if fast > 0.0 { "rise" } else { "sink" };
+                let [slow, fast] = [slow, fast].map(|speed| rounded(speed.abs()));
+                format!("; vehicles with such a bias on a fixed graph {way} together for ever, at {slow} to {fast} m/s where no message is late")
+            });
+            format!(
+                "that of {} has a bias e, which leaves V̇ = −α* m |ṡ|² − Δm wᵀe, whose last term has no sign{together}",
+                agent.name
+            )
+        }
         KindEvidence::Matched => "they do: the power of what acts is e_n w_n, which leaves V finite".into(),
         KindEvidence::Unmatched { agent } => format!(
             "what disturbs {} enters where the slopes of the steps may grow with the state, so that V may not stay finite",
@@ -199,7 +211,9 @@ fn rate(agent: &Named, bandwidth_per_s: f64, design: ThrustKind) -> String {
     let foreseen = match design {
         ThrustKind::Continuous => "its rate cannot be foreseen, so the body lags behind",
         ThrustKind::Differentiable { .. } => "its rate is foreseen, so what the body misses dies out",
-        ThrustKind::Adaptive { .. } => "its rate is foreseen as well as the mass is known",
+        ThrustKind::Adaptive { .. } | ThrustKind::ByAcceleration { .. } => {
+            "its rate is foreseen as well as the mass is known"
+        }
     };
     format!(
         "{} is a rigid body that torques turn with a bandwidth of {bandwidth_per_s} per second; {foreseen}",

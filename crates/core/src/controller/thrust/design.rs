@@ -1,5 +1,10 @@
 //! What can be chosen about the control of a vehicle.
 
+use crate::Scalar;
+use crate::attitude::{Quaternion, rotate};
+use crate::controller::Trouble;
+use crate::signal::Signal;
+
 /// Which of the paper's controllers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThrustDesign {
@@ -46,12 +51,41 @@ pub enum Floor {
     },
 }
 
+impl Yaw {
+    /// ω₃ where the heading to keep is `heading`.
+    pub(super) fn turn(self, attitude: Quaternion, heading: f64) -> f64 {
+        let (sin, cos) = Scalar::sin_cos(heading);
+        let look = rotate(attitude, [1.0, 0.0, 0.0]);
+        self.rate + self.gain * (look[0] * sin - look[1] * cos)
+    }
+}
+
 impl Floor {
     /// σ₀, N.
     pub fn newtons(self) -> f64 {
         match self {
             Floor::Stops(floor) | Floor::Kept { floor, .. } => floor,
         }
+    }
+
+    /// σ̇, where the law wants `d_sigma`.
+    pub(super) fn kept(self, sigma: f64, d_sigma: f64) -> f64 {
+        match self {
+            Floor::Stops(_) => d_sigma,
+            Floor::Kept { floor, approach_s } => d_sigma.max((floor - sigma) / approach_s),
+        }
+    }
+
+    /// What the law divides by, when it is too small.
+    pub(super) fn trouble(self, sigma: f64) -> Option<Trouble> {
+        let floor = match self {
+            Floor::Stops(floor) => floor,
+            // Kept above its floor from wherever it started, unless that was no thrust at all.
+            Floor::Kept { .. } => 0.0,
+        };
+        // Not a number is trouble too.
+        let enough = sigma > floor;
+        (!enough).then_some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
     }
 }
 

@@ -64,19 +64,21 @@
 //! **σ near zero.** The law divides by σ. Either the run stops at a floor σ₀ > 0, or, if wanted, σ̇ is not let below
 //! −(σ − σ₀)/T₀, so σ ≥ σ₀ for ever. Where that bound acts the vehicle does not do what u says, and no theorem holds.
 
+mod accelerated;
 mod cascade;
 mod design;
 #[cfg(test)]
 mod tests;
 mod vehicle;
 
+pub use accelerated::{AccelerationMeasured, ThrustByAcceleration};
 pub use cascade::{RateLoop, RotorcraftMeasured, ThrustCascade};
 pub use design::{Floor, ThrustDesign, Yaw};
 
 use alloc::vec::Vec;
 
 use super::{Balance, Jets};
-use crate::attitude::{cross, dot, rotate, rotate_back};
+use crate::attitude::{Quaternion, cross, dot, rotate, rotate_back};
 use crate::law::Range;
 use crate::plant::{Vehicle, VehicleState};
 use crate::reference::{
@@ -162,6 +164,11 @@ struct Flight {
     v: [f64; 3],
     /// u̇, where it exists without derivatives of what is heard; up to a part that vanishes with ṡ under (58).
     du: Option<[f64; 3]>,
+}
+
+/// v = −Rᵀ u.
+fn backward(attitude: Quaternion, u: [f64; 3]) -> [f64; 3] {
+    rotate_back(attitude, u).map(|v| -v)
 }
 
 /// An offset has three axes.
@@ -334,16 +341,11 @@ impl Thrust {
             (alpha_star, u, Some(core::array::from_fn(|k| mass * dw[k] - pull(k))))
         };
 
-        let v = rotate_back(*measured.attitude, u).map(|v| -v);
-        let mut d_sigma = v[2] - a * sigma;
-        if let Floor::Kept { floor, approach_s } = self.floor {
-            d_sigma = d_sigma.max((floor - sigma) / approach_s);
-        }
+        let v = backward(*measured.attitude, u);
+        let d_sigma = self.floor.kept(sigma, v[2] - a * sigma);
         d_rest[0] = d_sigma;
         d_rest[1] = self.yaw.rate;
-        let (sin, cos) = Scalar::sin_cos(heading);
-        let look = rotate(*measured.attitude, [1.0, 0.0, 0.0]);
-        let turn = self.yaw.rate + self.yaw.gain * (look[0] * sin - look[1] * cos);
+        let turn = self.yaw.turn(*measured.attitude, heading);
         Ok(Flight { sigma, d_sigma, omega: [-v[1] / sigma, v[0] / sigma, turn], v, du })
     }
 

@@ -1,5 +1,7 @@
 //! Identities of the proofs, as algebra and along short runs.
 
+mod accelerated;
+
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -88,7 +90,9 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
         let jets = offset(0.0);
         let target = if self.moves { Jets::from(&jets) } else { Jets::NONE };
         let heard = Heard::new(&[DEGREE], &SUMS, 3).unwrap();
-        let given = Given { measured: self.law.see(state).unwrap(), heard, target };
+        let mut output = vec![0.0; self.plant.output_len()];
+        self.plant.output(&mut self.plant.scratch(), state, &mut output).unwrap();
+        let given = Given { measured: self.law.see(&output).unwrap(), heard, target };
         let mut own = vec![0.0; total(&self.law.states())];
         self.law.start(&mut self.law.scratch(), given, &[], &mut own).unwrap();
         [state, &own].concat()

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Floor, Thrust};
+use super::Thrust;
 use crate::LengthError;
 use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::plant::{Vehicle, VehicleState};
@@ -12,15 +12,7 @@ use crate::signal::{Block, Signal};
 impl Thrust {
     /// What the law divides by, when it is too small.
     pub(super) fn vanishing(&self, state: &[f64]) -> Option<Trouble> {
-        let sigma = self.sigma(state)?;
-        let floor = match self.floor {
-            Floor::Stops(floor) => floor,
-            // Kept above its floor from wherever it started, unless that was no thrust at all.
-            Floor::Kept { .. } => 0.0,
-        };
-        // Not a number is trouble too.
-        let enough = sigma > floor;
-        (!enough).then_some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
+        self.floor.trouble(self.sigma(state)?)
     }
 }
 

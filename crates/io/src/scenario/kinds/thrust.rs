@@ -200,6 +200,9 @@ pub enum ThrustDesignFile {
     Differentiable(DifferentiableFile),
     /// (49), (57), (58), Theorem 5: of order three, for an unknown mass.
     Adaptive(AdaptiveThrustFile),
+    /// (57) and (58) by a measured acceleration, which the paper does without: of order two, for an unknown mass; angular velocities jump
+    /// where the network switches. For a `vehicle`.
+    ByAcceleration(AcceleratedThrustFile),
 }
 
 /// The gains of (50).
@@ -229,6 +232,25 @@ pub struct AdaptiveThrustFile {
     pub estimate_start_kg: At<f64>,
     /// Bounds beyond which the mass estimate is not used. Default: none.
     pub bounds: Option<EstimateBoundsFile>,
+}
+
+/// The gains of (57) and (58), and the accelerometer.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AcceleratedThrustFile {
+    /// The gain α*, in 1/s. Default: 3.
+    #[schemars(with = "Option<Positive>")]
+    pub damping_per_s: Option<At<f64>>,
+    /// The gain γ* of the mass estimate. Default: 0.2. Zero to keep the estimate as it is.
+    #[schemars(range(min = 0))]
+    pub adaptation_gain: Option<At<f64>>,
+    /// The mass estimate at the start, in kg; positive, for the thrust starts with it.
+    #[schemars(with = "Positive")]
+    pub estimate_start_kg: At<f64>,
+    /// Bounds beyond which the mass estimate is not used. Default: none.
+    pub bounds: Option<EstimateBoundsFile>,
+    /// What the accelerometer gives too much on each axis, in m/s². Default: nothing.
+    pub bias_m_s2: Option<At<[At<f64>; 3]>>,
 }
 
 /// The heading of a vehicle.
@@ -270,7 +292,7 @@ impl LawKind for ThrustFile {
     fn table() -> LawTable {
         LawTable {
             key: "thrust",
-            description: "A vehicle with one thrust: (46), (50) or (57) of the paper.",
+            description: "A vehicle with one thrust: (46), (50) or (57) of the paper, or (57) by a measured acceleration.",
             made_for: "vehicles and rotorcraft",
         }
     }
@@ -305,6 +327,18 @@ impl LawKind for ThrustFile {
                     gamma_star: number_or(adaptation_gain, ADAPTATION_GAIN),
                     estimate_start,
                     bounds: bounds.as_ref().map(|bounds| bounds.of_mass(robot, agent.agent)).transpose()?,
+                };
+                (kind, estimate_start)
+            }
+            Some(ThrustDesignFile::ByAcceleration(file)) => {
+                let estimate_start = file.estimate_start_kg.value;
+                let bias = file.bias_m_s2.as_ref().map(|bias| bias.value.each_ref().map(|entry| entry.value));
+                let kind = ThrustKind::ByAcceleration {
+                    alpha_star: number_or(&file.damping_per_s, DAMPING_PER_S),
+                    gamma_star: number_or(&file.adaptation_gain, ADAPTATION_GAIN),
+                    estimate_start,
+                    bounds: file.bounds.as_ref().map(|bounds| bounds.of_mass(robot, agent.agent)).transpose()?,
+                    bias: bias.unwrap_or_default(),
                 };
                 (kind, estimate_start)
             }

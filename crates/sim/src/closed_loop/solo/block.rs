@@ -33,8 +33,10 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn append_start(&self, agents: &[AgentSetup], x: &mut Vec<f64>) {
         let first = x.len();
-        let start = &agents[self.agent].start;
+        let own = &agents[self.agent];
+        let start = &own.start;
         x.extend(start.q.iter().chain(&start.dq).chain(&start.rest));
+        x.extend(own.interface().into_iter().flat_map(|interface| interface.actuator_start));
         x.resize(first + self.state_len(), 0.0);
         if let Some(target) = self.target.as_ref().filter(|target| target.is_offset) {
             let Layout { m, velocities, .. } = self.layout;

@@ -103,6 +103,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::TurningTarget => {
             "`law.attitude`, whose reference has its own dynamics, or an attitude of four constants".into()
         }
+        KindEvidence::AccelerationBiased { .. } => {
+            "no `bias_m_s2`, or `design.adaptive`, which reads no acceleration".into()
+        }
         KindEvidence::SafeCommand => "no `safe_command`: a run then ends where the law has no value".into(),
         KindEvidence::NoSpacecraft => "`robot.spacecraft`".into(),
         KindEvidence::Unmatched { agent } => format!("what disturbs {} in its last equation alone", agent.name),
@@ -120,6 +123,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::AttitudeApart { .. }
         | KindEvidence::TargetStill
         | KindEvidence::EqualInertia
+        | KindEvidence::AccelerationUnbiased
         | KindEvidence::Matched
         | KindEvidence::Momentum(_) => return None,
     })
