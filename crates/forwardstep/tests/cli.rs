@@ -2,6 +2,8 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "cli/advice.rs"]
+mod advice;
 mod support;
 
 use std::fs;
@@ -11,25 +13,6 @@ use std::process::{Command as Process, Stdio};
 use forwardstep::io::scenario::SHIPPED_SCENARIOS;
 use support::{folder, forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
-
-/// Twelve carts, every other at the other end.
-const RING: &str = r#"format = 2
-title = "A ring"
-time = { end_s = 1, record_every_s = 0.1 }
-[[agents]]
-name = "cart"
-count = 12
-robot.point_mass = { dimension = 1, mass_kg = 1 }
-start.position_m = [[1], [-1], [1], [-1], [1], [-1], [1], [-1], [1], [-1], [1], [-0.8]]
-[reference.consensus]
-roots_per_s = [3, 4]
-exchange = "position_velocity"
-[law.known]
-[network]
-edges.ring = { direction = "both" }
-[goal]
-disagreement_below = 1e-3
-"#;
 
 /// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.
 const QUICK: &str = r#"
@@ -410,61 +393,6 @@ fn no_name_from_outside_reaches_the_terminal_raw() {
             assert!(!said.contains(raw), "{arguments:?}: {said:?}");
             assert!(!said.lines().any(|line| line.trim_start().starts_with("error: forged")), "{arguments:?}: {said}");
         }
-    }
-}
-
-#[test]
-fn a_run_that_ends_too_early_says_so_and_how_long_would_be_enough() {
-    let folder = folder();
-    let run = |end_s: &str| {
-        let text =
-            format!("{QUICK}[goal]\ndisagreement_below = 1e-3\n").replace("end_s = 30", &format!("end_s = {end_s}"));
-        fs::write(folder.path().join("two.toml"), text).unwrap();
-        forwardstep(&folder, &["run", "two.toml", "--out", "two", "--force"])
-    };
-    let short = run("3").code(1);
-    let text = stdout(&short);
-    let words = text.lines().find(|line| line.trim_start().starts_with("in words")).unwrap();
-    assert!(words.contains("not agreed: ") && words.contains(" rad apart (arm-1, arm-2), still moving at "), "{words}");
-    assert!(words.ends_with(" rad/s, and coming closer"), "{words}");
-    let page = fs::read_to_string(folder.path().join("two/report.html")).unwrap();
-    assert!(page.contains("not agreed: ") && page.contains("run longer"));
-    let advised = text.split("`time.end_s = ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
-    assert!(advised.parse::<f64>().unwrap() < 30.0, "{advised}");
-    let long = stdout(&run(advised).success());
-    assert!(long.contains("in words") && long.contains(" agreed: ") && !long.contains("to change"), "{long}");
-}
-
-/// What disturbs neighbours fades in a moment; what has to go all around takes long, and is most of what is left.
-#[test]
-fn a_run_that_looks_quick_at_first_is_told_how_long_its_design_takes() {
-    let folder = folder();
-    let run = |end_s: &str| {
-        fs::write(folder.path().join("ring.toml"), RING.replace("end_s = 1", &format!("end_s = {end_s}"))).unwrap();
-        forwardstep(&folder, &["run", "ring.toml", "--out", "ring", "--force"])
-    };
-    for short in ["1", "2"] {
-        let text = stdout(&run(short).code(1));
-        let advised = text.split("`time.end_s = ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
-        assert!(advised.len() <= 3, "{advised}");
-        let long = stdout(&run(advised).success());
-        assert!(long.contains(" agreed: "), "{long}");
-    }
-}
-
-/// What delays leave is not put down to the robots; what robots leave is.
-#[test]
-fn what_late_links_leave_behind_a_leader_is_said_to_be_theirs() {
-    let folder = folder();
-    let shipped = forwardstep::io::scenario::shipped_scenario("leader-over-late-links").unwrap().text;
-    let goal = shipped.replace("error_below = 0.14", "error_below = 0.014");
-    let prompt = goal.lines().filter(|line| !line.starts_with("delay.")).collect::<Vec<_>>().join("\n");
-    let loose = prompt.replace("damping.gain = 100", "damping.gain = 0.3").replace("end_s = 40", "end_s = 10");
-    for (name, text, late) in [("late", &goal, true), ("loose", &loose, false)] {
-        fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
-        let said = stdout(&forwardstep(&folder, &["run", &format!("{name}.toml")]).code(1));
-        assert_eq!(said.contains("messages are late"), late, "{name}: {said}");
-        assert_eq!(said.contains("robots do not follow"), !late, "{name}: {said}");
     }
 }
 

@@ -119,14 +119,15 @@ fn claims_are_met(formula: &Expression, weights: &[f64; 5], found: &ForEver) -> 
         );
         seen = [seen[0].min(exact.high), seen[1].max(exact.low)];
     }
-    // Whatever is called unbounded is seen to leave half as much again as it does at first, unless that is more than a logarithm, which comes to
+    // Whatever is called unbounded is seen to leave half as much again as it does at first, unless it is more than a logarithm in it, which comes to
     // 693 at the last of these times, could leave.
     let first = (0..160).map(|k| sampled(f64::from(k) * 0.1)).filter(|value| value.is_finite());
     let size = first.fold(0.0, |size: f64, value| size.max(value.abs()));
     let leaves = |value: f64| value.is_nan() || value.abs() > 1.5 * size;
+    let hidden = size > 400.0 && format!("{formula:?}").contains("Unary(Log)");
     let overflows = times().any(|t| !sampled(t).is_finite());
     prop_assert!(
-        !found.is_unbounded() || overflows || size > 400.0 || times().any(|t| leaves(sampled(t))),
+        !found.is_unbounded() || overflows || hidden || times().any(|t| leaves(sampled(t))),
         "{found:?} {size}"
     );
     Ok(())

@@ -34,7 +34,7 @@ const graphWords = ({ edges }) => {
   return [
     `${count}.`,
     ...(late ? [`Oldest message heard: ${number(late.age, 3)} s (${name(late.from)} → ${name(late.to)}).`] : []),
-    ...(silent.length ? [`Nobody hears ${someNames(silent)}.`] : []),
+    ...(silent.length ? [`No agent hears ${someNames(silent)}.`] : []),
     ...(deaf.length ? [`Nothing is heard by ${someNames(deaf)}.`] : []),
     ...(flightWords ? [flightWords] : []),
   ].join(" ");

@@ -69,7 +69,7 @@ impl NetworkReader<'_> {
         for edge in &edges {
             let (from, to) = (&edge.value.from, &edge.value.to);
             match [from, to].into_iter().find(|name| !self.index.contains_key(name.value.as_str())) {
-                Some(nobody) => faults.add(|| self.nobody(nobody)),
+                Some(unknown) => faults.add(|| self.no_such_agent(unknown)),
                 None => {
                     faults.noted(self.ends((from, to), edge));
                 }
@@ -193,10 +193,10 @@ impl NetworkReader<'_> {
     }
 
     fn agent(&self, name: &At<String>) -> Result<usize, Fault> {
-        self.index.get(name.value.as_str()).copied().ok_or_else(|| self.nobody(name))
+        self.index.get(name.value.as_str()).copied().ok_or_else(|| self.no_such_agent(name))
     }
 
-    fn nobody(&self, name: &At<String>) -> Fault {
+    fn no_such_agent(&self, name: &At<String>) -> Fault {
         fault(name, ScenarioProblem::NoSuchAgent { name: name.value.clone(), agents: self.names.to_vec() })
     }
 }

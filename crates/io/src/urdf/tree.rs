@@ -63,7 +63,7 @@ pub(super) fn arrange(reading: &mut Reading<'_>, links: &[Link], joints: &[Joint
         holder[child] = Some(j);
         held_by[parent].push(j);
     }
-    // Links that nobody holds, and loops, may only follow from what was found.
+    // Links without a parent, and loops, may only follow from what was found.
     if !is_sound {
         return Ok(Vec::new());
     }

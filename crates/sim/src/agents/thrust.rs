@@ -130,7 +130,7 @@ impl Law for ThrustLaw {
         Some(Interface {
             follows: &[ReferenceFamily::Consensus],
             measures_velocity: true,
-            // What pushes would be felt by the accelerometer, which is not modelled.
+            // An accelerometer measures what a push does too, and that is not modelled.
             pushed: !by_acceleration,
             estimates: self.design.estimate_start().is_some(),
             actuator_start: if by_acceleration {

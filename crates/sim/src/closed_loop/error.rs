@@ -9,6 +9,7 @@ use forwardstep_core::sampled::RecipeError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use super::velocity_quantity::VelocityQuantity;
 use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::quantity::{Name, Path, QuantityError, about, entries, number};
@@ -472,40 +473,6 @@ impl From<NetworkError> for SetupError {
         match error {
             NetworkError::Quantity(error) => SetupError::Quantity(error),
             error => SetupError::Network(error),
-        }
-    }
-}
-
-/// What is said of a sensor of velocities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VelocityQuantity {
-    /// [`crate::Sensors::velocity_noise`].
-    Noise,
-    /// [`crate::Sensors::tip_velocity_noise`].
-    TipNoise,
-    /// [`crate::Sensors::velocity_quantum`].
-    Step,
-    /// [`crate::VelocitySensor::Filtered`].
-    CutOff,
-}
-
-impl VelocityQuantity {
-    pub(super) fn key(self) -> &'static str {
-        match self {
-            VelocityQuantity::Noise => "noise.velocity",
-            VelocityQuantity::TipNoise => "noise.tip_velocity",
-            VelocityQuantity::Step => "quantisation.velocity",
-            VelocityQuantity::CutOff => "velocity",
-        }
-    }
-
-    /// What it is called in messages.
-    pub fn words(self) -> &'static str {
-        match self {
-            VelocityQuantity::Noise => "the noise of velocities",
-            VelocityQuantity::TipNoise => "the noise of the velocities of tips",
-            VelocityQuantity::Step => "the step of velocities",
-            VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
         }
     }
 }

@@ -47,10 +47,11 @@ mod sliding;
 mod solo;
 mod unused;
 mod valid;
+mod velocity_quantity;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
-pub use error::{SetupError, VelocityQuantity};
+pub use error::SetupError;
 pub use injected::{Energy, Powers};
 pub(crate) use members::tracking_law;
 pub use probe::probe_balance;
@@ -59,3 +60,4 @@ pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;
 pub use sampled_map::{SampledJacobian, sampled_jacobian};
 pub use valid::validate;
+pub use velocity_quantity::VelocityQuantity;

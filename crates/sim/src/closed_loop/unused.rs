@@ -2,7 +2,8 @@
 
 use forwardstep_core::LengthError;
 
-use super::error::{SetupError, VelocityQuantity};
+use super::error::SetupError;
+use super::velocity_quantity::VelocityQuantity;
 use crate::reference::{Desired, ReferenceDynamics, ReferenceInterface, Roots};
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface};

@@ -37,7 +37,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Floor, Yaw, backward, check_target};
+use super::{Floor, Yaw, backward, begin_reference, check_target, driving, learnt};
 use crate::LengthError;
 use crate::attitude::dot;
 use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
@@ -157,8 +157,7 @@ impl ThrustByAcceleration {
         self.consensus.evaluate(3, Measured { q: &x, dq: &dx }, &state[..REFERENCE], given.heard, out)?;
         let [alpha_star, _] = self.gains;
         let ddz = [rate[3], rate[4], rate[5]];
-        let mut w: [f64; 3] = core::array::from_fn(|k| ddz[k] + d(k, 3) + alpha_star * (dz[k] + d(k, 2)));
-        w[2] -= alpha_star * self.gravity;
+        let w = driving(&dz, &ddz, given.target, [alpha_star, self.gravity]);
         let s = core::array::from_fn(|k| dx[k] - z[k]);
         Ok(Errors { s, ds: core::array::from_fn(|k| ddx[k] - dz[k] - d(k, 2)), w, ddz })
     }
@@ -220,17 +219,9 @@ impl Controller for ThrustByAcceleration {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", STATE, state.len())?;
-        check_target(given.target)?;
-        state.fill(0.0);
-        // s(0) = 0 when nothing else is wanted.
-        for k in 0..3 {
-            state[k] = given.measured.at.dx[k] - given.target.get(k).map_or(0.0, |jet| jet[1]);
-        }
-        for (block, wanted) in state[..REFERENCE].chunks_exact_mut(3).zip(wanted) {
-            LengthError::check("the start of the reference", 3, wanted.len())?;
-            block.copy_from_slice(wanted);
-        }
-        state[REFERENCE] = self.yaw.heading;
+        let (reference, rest) = state.split_at_mut(REFERENCE);
+        begin_reference(reference, given.measured.at.dx, given.target, wanted)?;
+        rest.copy_from_slice(&[self.yaw.heading, 0.0]);
         Ok(())
     }
 
@@ -282,14 +273,13 @@ impl Controller for ThrustByAcceleration {
     ) -> Result<Balance, LengthError> {
         let Errors { ds, w, .. } = self.errors(given, state)?;
         let AcceleratedVehicle { vehicle, bias } = truth.plant;
-        let ([alpha_star, gamma_star], [mu, used], mass) = (self.gains, self.found(state), vehicle.mass);
+        let ([alpha_star, gamma_star], [mu, _], mass) = (self.gains, self.found(state), vehicle.mass);
         let ds: [f64; 3] = core::array::from_fn(|k| ds[k] - bias[k]);
         let (mut value, mut lost) = (0.5 * mass * dot(ds, ds), alpha_star * mass * dot(ds, ds));
         if gamma_star > 0.0 {
-            let delta = mu - mass;
-            value += self.bounds.map_or(0.5 * delta * delta, |range| range.potential(mu, mass)) / gamma_star;
-            lost += self.bounds.map_or(0.0, |range| alpha_star * range.withheld(mu, mass)) / gamma_star;
-            lost += (used - mass) * dot(w, *bias);
+            let [learnt, beyond, delta] = learnt(self.bounds, mu, mass);
+            value += learnt / gamma_star;
+            lost += alpha_star / gamma_star * beyond + delta * dot(w, *bias);
         }
         Ok(Balance { value, dissipation: lost })
     }

@@ -171,6 +171,41 @@ fn backward(attitude: Quaternion, u: [f64; 3]) -> [f64; 3] {
     rotate_back(attitude, u).map(|v| -v)
 }
 
+/// w = (z̈ + d⃛) + a (ż + d̈) − a g e₃.
+fn driving(dz: &[f64], ddz: &[f64], target: Jets<'_>, [a, gravity]: [f64; 2]) -> [f64; 3] {
+    let d = |k: usize, r: usize| target.get(k).map_or(0.0, |jet| jet[r]);
+    let mut w: [f64; 3] = core::array::from_fn(|k| ddz[k] + d(k, 3) + a * (dz[k] + d(k, 2)));
+    w[2] -= a * gravity;
+    w
+}
+
+/// z, ż, … at the start: s(0) = 0 when nothing else is wanted.
+fn begin_reference(
+    reference: &mut [f64],
+    dx: &[f64; 3],
+    target: Jets<'_>,
+    wanted: &[Vec<f64>],
+) -> Result<(), LengthError> {
+    check_target(target)?;
+    reference.fill(0.0);
+    for k in 0..reference.len().min(3) {
+        reference[k] = dx[k] - target.get(k).map_or(0.0, |jet| jet[1]);
+    }
+    for (block, wanted) in reference.chunks_exact_mut(3).zip(wanted) {
+        LengthError::check("the start of the reference", 3, wanted.len())?;
+        block.copy_from_slice(wanted);
+    }
+    Ok(())
+}
+
+/// What V holds of an estimate μ of `mass`, γ* times, and what it loses of it beyond a bound, over α*; with Π(μ) − m.
+fn learnt(bounds: Option<Range>, mu: f64, mass: f64) -> [f64; 3] {
+    let delta = mu - mass;
+    bounds.map_or([0.5 * delta * delta, 0.0, delta], |range| {
+        [range.potential(mu, mass), range.withheld(mu, mass), range.nearest(mu) - mass]
+    })
+}
+
 /// An offset has three axes.
 fn check_target(target: Jets<'_>) -> Result<(), LengthError> {
     if target.is_empty() { Ok(()) } else { LengthError::check("target", 3, target.len()) }
@@ -247,12 +282,8 @@ impl Thrust {
     /// s and w of z, ż, z̈.
     fn error_and_push(&self, dx: &[f64; 3], reference: &[f64], target: Jets<'_>) -> ([f64; 3], [f64; 3]) {
         let [alpha_star, ..] = self.design.gains();
-        let d = |k: usize, r: usize| target.get(k).map_or(0.0, |jet| jet[r]);
-        let s = core::array::from_fn(|k| dx[k] - reference[k] - d(k, 1));
-        let mut w: [f64; 3] =
-            core::array::from_fn(|k| reference[6 + k] + d(k, 3) + alpha_star * (reference[3 + k] + d(k, 2)));
-        w[2] -= alpha_star * self.gravity;
-        (s, w)
+        let s = core::array::from_fn(|k| dx[k] - reference[k] - target.get(k).map_or(0.0, |jet| jet[1]));
+        (s, driving(&reference[3..6], &reference[6..9], target, [alpha_star, self.gravity]))
     }
 
     fn begin(
@@ -263,17 +294,8 @@ impl Thrust {
         state: &mut [f64],
     ) -> Result<(), LengthError> {
         LengthError::check("state", self.state_len(), state.len())?;
-        check_target(target)?;
         let (reference, rest) = state.split_at_mut(self.design.reference_len());
-        reference.fill(0.0);
-        // s(0) = 0 when nothing else is wanted.
-        for k in 0..reference.len().min(3) {
-            reference[k] = measured.dx[k] - target.get(k).map_or(0.0, |jet| jet[1]);
-        }
-        for (block, wanted) in reference.chunks_exact_mut(3).zip(wanted) {
-            LengthError::check("the start of the reference", 3, wanted.len())?;
-            block.copy_from_slice(wanted);
-        }
+        begin_reference(reference, measured.dx, target, wanted)?;
         rest[0] = self.thrust_start.unwrap_or(self.mass * self.gravity);
         rest[1] = self.yaw.heading;
         if let Some(integral) = rest.get_mut(2) {
@@ -393,12 +415,8 @@ impl Thrust {
             && gamma_star > 0.0
         {
             let mu = self.mass + integral - gamma_star * dot(w, s);
-            let mut delta = mu - vehicle.mass;
-            let mut learnt = 0.5 * delta * delta;
-            if let Some(range) = self.bounds {
-                (delta, learnt) = (range.nearest(mu) - vehicle.mass, range.potential(mu, vehicle.mass));
-                withheld = alpha_star / gamma_star * range.withheld(mu, vehicle.mass);
-            }
+            let [learnt, beyond, delta] = learnt(self.bounds, mu, vehicle.mass);
+            withheld = alpha_star / gamma_star * beyond;
             value += learnt / gamma_star;
             power -= delta * force(w);
         }

@@ -101,7 +101,7 @@ pub(super) fn network(setup: &Setup) -> String {
     let edges: Vec<usize> = graphs.iter().map(Vec::len).collect();
     let (least, most) = (edges.iter().min().copied().unwrap_or(0), edges.iter().max().copied().unwrap_or(0));
     if most == 0 {
-        return "nobody hears anybody".into();
+        return "no agent hears another".into();
     }
     let many = if least == most { count(most, "edge") } else { format!("{least} to {most} edges") };
     let graphs = match graphs.len() {
