@@ -52,6 +52,7 @@ fn attack_finds_a_network_over_which_a_broken_hypothesis_matters() {
         ("110-windows", "leader-in-every-graph"),
         ("110-late-turns", "fixed-graph, no-delay"),
         ("122-turns", "fixed-graph"),
+        ("swarm-turns", "fixed-graph, printed-design, swarm-coupling"),
     ] {
         // It ends as soon as it has found one: mostly within a minute, on a machine that is busy later.
         let said =

@@ -53,8 +53,8 @@ pub(crate) struct FalsifyOptions {
 #[derive(Debug, Args)]
 pub(crate) struct AttackOptions {
     /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots, 119-weights,
-    /// 110-windows, 110-late-turns or 122-turns), or a shipped scenario by its name, or a file by its
-    /// path, whose delays and schedules are varied within what it states
+    /// 110-windows, 110-late-turns, 122-turns or swarm-turns), or a shipped scenario by its name, or a
+    /// file by its path, whose delays and schedules are varied within what it states
     #[arg(value_name = "DESIGN|SCENARIO", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) what: String,
     /// Pieces of the delay, and phases of the schedule, at most
@@ -96,6 +96,8 @@ pub(crate) enum AttackTarget {
     /// (122) over graphs that take turns, each with weights of its own: does the error grow?
     #[value(name = "122-turns")]
     Integrals,
+    /// Swarm tracking over graphs that take turns, all with the same weight: does the error grow?
+    SwarmTurns,
 }
 
 impl AttackTarget {
@@ -114,6 +116,7 @@ impl AttackTarget {
             AttackTarget::Windows => Target::Windows,
             AttackTarget::LateTurns => Target::LateTurns,
             AttackTarget::Integrals => Target::Integrals,
+            AttackTarget::SwarmTurns => Target::Swarm,
         }
     }
 }

@@ -36,6 +36,8 @@ pub(crate) enum Target {
     LateTurns,
     /// (122) over graphs that take turns, each with weights of its own.
     Integrals,
+    /// Swarm tracking over graphs that take turns, all with the same weight.
+    Swarm,
 }
 
 /// How long, and with how many pieces.
@@ -69,6 +71,10 @@ const STAYS: f64 = 0.05;
 const PATIENCE: u32 = 25;
 /// Agents at most.
 const MOST_AGENTS: usize = 4;
+/// Agents of swarms: of two and three none is known that fails over two graphs with the same weight.
+const SWARM_AGENTS: [usize; 3] = [4, 5, 6];
+/// Weights of all links of a swarm, by which k = 60 is multiplied.
+const SWARM_WEIGHTS: [&str; 3] = ["0.2", "0.5", "1"];
 
 impl Target {
     /// Whether it lies inside the class of a theorem, so that nothing may grow.
@@ -80,7 +86,8 @@ impl Target {
             | Target::Weights
             | Target::Windows
             | Target::LateTurns
-            | Target::Integrals => false,
+            | Target::Integrals
+            | Target::Swarm => false,
         }
     }
 
@@ -88,7 +95,7 @@ impl Target {
     pub(crate) fn fails(self) -> f64 {
         match self {
             Target::Velocities | Target::Positions => 1.0 + 1e-6,
-            Target::FirstRoots | Target::ComplexRoots | Target::Integrals => FAILS,
+            Target::FirstRoots | Target::ComplexRoots | Target::Integrals | Target::Swarm => FAILS,
             Target::Weights | Target::Windows | Target::LateTurns => STAYS,
         }
     }
@@ -101,13 +108,14 @@ impl Target {
             Target::Weights => Some((Design::Differentiable, true)),
             Target::Windows | Target::LateTurns => Some((Design::Continuous, false)),
             Target::Integrals => Some((Design::WithoutAcceleration, false)),
+            Target::Swarm => Some((Design::Swarm, false)),
         }
     }
 
-    /// How far from a leader agents start. Far from it the sign of (119) and (122), which is bounded, does not cover up what is left over.
+    /// How far from a leader agents start. Far from it the sign of (119), (122) and of swarms, which is bounded, does not cover up what is left over.
     fn away(self) -> f64 {
         match self {
-            Target::Weights | Target::Integrals => 50.0,
+            Target::Weights | Target::Integrals | Target::Swarm => 50.0,
             Target::Velocities
             | Target::Positions
             | Target::FirstRoots
@@ -123,7 +131,7 @@ impl Target {
             Target::Velocities | Target::Positions | Target::FirstRoots | Target::ComplexRoots | Target::LateTurns => {
                 true
             }
-            Target::Weights | Target::Windows | Target::Integrals => false,
+            Target::Weights | Target::Windows | Target::Integrals | Target::Swarm => false,
         }
     }
 }
@@ -137,7 +145,10 @@ impl Attack {
         let (mut tried, mut round) = (0, 0_u64);
         while started.elapsed() < self.limit && !stopped() {
             // The fewest agents first, again and again with more.
-            let agents = 2 + (round % (MOST_AGENTS as u64 - 1)) as usize;
+            let agents = match self.target {
+                Target::Swarm => SWARM_AGENTS[(round % SWARM_AGENTS.len() as u64) as usize],
+                _ => 2 + (round % (MOST_AGENTS as u64 - 1)) as usize,
+            };
             round += 1;
             let mut best = self.draw(rng, agents);
             let mut left = self.left(&best).unwrap_or(0.0);
@@ -185,7 +196,7 @@ impl Attack {
             starts: (0..agents).map(|k| [if k % 2 == 0 { away } else { -away }, 0.0, 0.0]).collect(),
             roots: (0..agents)
                 .map(|_| match self.target {
-                    Target::Weights | Target::Integrals => vec![slow, slow],
+                    Target::Weights | Target::Integrals | Target::Swarm => vec![slow, slow],
                     Target::Windows | Target::LateTurns => vec![first],
                     Target::ComplexRoots => Vec::new(),
                     Target::Velocities | Target::Positions | Target::FirstRoots => vec![own(rng), 2.0],
@@ -201,7 +212,7 @@ impl Attack {
                 .map(|_| Phase { dwell_s: hundredths(rng, 0.1, 3.0), edges: Vec::new(), weight: None })
                 .collect(),
             switching: Switching::Repeat,
-            weight: "1".into(),
+            weight: if self.target == Target::Swarm { pick(rng, &SWARM_WEIGHTS) } else { "1" }.into(),
             delay: "constant_s = 0".into(),
             end_s: match self.target {
                 Target::Weights
@@ -209,7 +220,8 @@ impl Attack {
                 | Target::Positions
                 | Target::Windows
                 | Target::LateTurns
-                | Target::Integrals => 60.0,
+                | Target::Integrals
+                | Target::Swarm => 60.0,
                 Target::FirstRoots | Target::ComplexRoots => 240.0,
             },
         };
@@ -245,6 +257,12 @@ impl Attack {
         if self.target.leading().is_some() {
             for phase in &mut case.phases {
                 phase.edges = tree(rng, agents);
+                if self.target == Target::Swarm {
+                    let back: Vec<_> =
+                        phase.edges.iter().filter(|edge| edge.0 > 0).map(|&(from, to)| (to, from)).collect();
+                    phase.edges.extend(back);
+                    add_mutual(rng, agents, &mut phase.edges);
+                }
                 phase.weight = (self.target == Target::Integrals).then(|| pick(rng, &[0.3, 1.0, 3.0, 10.0, 30.0]));
             }
             return;
@@ -296,6 +314,7 @@ impl Attack {
                 let at = rng.random_range(0..other.phases.len());
                 other.phases[at].dwell_s = hundredths(rng, 0.1, 3.0);
             }
+            3 if self.target == Target::Swarm => other.weight = pick(rng, &SWARM_WEIGHTS).into(),
             3 => other.weight = pick(rng, &["1", "3", "10"]).into(),
             _ if self.target == Target::ComplexRoots => other.pair = Some(pair(rng)),
             _ if self.target == Target::FirstRoots => {
@@ -332,6 +351,13 @@ impl Attack {
             Target::LateTurns | Target::Integrals => {
                 let each = setup.network.schedule.graphs.iter().all(|graph| rooted(&setup, graph));
                 each.then(|| error_left(&setup))?
+            }
+            Target::Swarm => {
+                // Over each of its graphs by itself everybody follows, by our derivation: no paper prints it.
+                let alone = |phase: &Phase| {
+                    broken(&Case { phases: vec![phase.clone()], ..case.clone() }) == [Id::PrintedDesign]
+                };
+                case.phases.iter().all(alone).then(|| error_left(&setup))?
             }
             Target::Weights => {
                 let left = error_left(&setup)?;
@@ -374,6 +400,18 @@ fn tree(rng: &mut ChaCha8Rng, agents: usize) -> Vec<(usize, usize)> {
     }
     let parent = |rng: &mut ChaCha8Rng, at: usize| rng.random_range(0..=at).checked_sub(1);
     (0..agents).map(|at| (parent(rng, at).map_or(0, |before| order[before]), order[at])).collect()
+}
+
+/// Some links more that lead both ways, or from the leader.
+fn add_mutual(rng: &mut ChaCha8Rng, agents: usize, edges: &mut Vec<(usize, usize)>) {
+    for to in 1..=agents {
+        for from in 0..to {
+            if !edges.contains(&(from, to)) && rng.random_bool(0.3) {
+                edges.push((from, to));
+                edges.extend((from > 0).then_some((to, from)));
+            }
+        }
+    }
 }
 
 /// A pair of complex roots with little damping.

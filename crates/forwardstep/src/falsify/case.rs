@@ -184,6 +184,14 @@ impl Case {
                 case.phases[k].edges.remove(gone);
                 case
             }));
+            // Where links lead both ways, the two of them.
+            found.extend(phase.edges.iter().filter(|(from, to)| from < to && phase.edges.contains(&(*to, *from))).map(
+                |&(from, to)| {
+                    let mut case = self.clone();
+                    case.phases[k].edges.retain(|edge| *edge != (from, to) && *edge != (to, from));
+                    case
+                },
+            ));
         }
         let mut simpler = |change: &dyn Fn(&mut Case)| {
             let mut case = self.clone();

@@ -102,13 +102,9 @@ fn switches_under_leader(design: FollowingDesign) -> &'static str {
             "the graph switches, and messages are late: what an agent said before a switch may come back to it after the next, \
              so that an error can go round for ever"
         }
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
             "the graph switches: the integral that the design is realised by keeps what former neighbours left in it, and the \
              error can grow"
-        }
-        FollowingDesign::Swarm { .. } => {
-            "the graph switches: the integral that the design is realised by keeps what former neighbours left in it, and the \
-             function that shows convergence changes with the graph"
         }
     }
 }
