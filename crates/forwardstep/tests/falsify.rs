@@ -165,3 +165,22 @@ fn attack_inside_a_theorem_finds_nothing_that_grows() {
     }
     forwardstep(&folder, &["attack", "a1", "--seconds", "1", "--out", "no/such/folder.toml"]).code(2);
 }
+
+#[test]
+fn a_swarm_that_fails_over_graphs_in_turns_has_graphs_each_of_which_is_enough() {
+    let folder = folder();
+    let arguments = ["attack", "swarm-turns", "--seconds", "300", "--seed", "2", "--out", "found.toml"];
+    forwardstep(&folder, &arguments).code(0);
+    let found: toml::Table = toml::from_str(&fs::read_to_string(folder.path().join("found.toml")).unwrap()).unwrap();
+    let phases = found["network"]["phases"].as_array().unwrap();
+    assert!(phases.len() > 1, "{found}");
+    for phase in phases {
+        let mut alone = found.clone();
+        let network = alone["network"].as_table_mut().unwrap();
+        network.remove("phases");
+        network.insert("edges".into(), phase["edges"].clone());
+        fs::write(folder.path().join("alone.toml"), alone.to_string()).unwrap();
+        // Nothing is against it but that no paper prints it.
+        forwardstep(&folder, &["check", "alone.toml", "--accept", "printed-design"]).code(0);
+    }
+}

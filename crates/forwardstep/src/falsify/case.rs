@@ -43,9 +43,14 @@ pub(crate) enum System {
     Vehicle(Thrust),
     /// Derivatives of one number, of this order.
     Chain(usize),
-    Spacecraft,
-    /// A planar arm whose tip follows a target.
-    Tip,
+    /// A spacecraft without velocities, under (74) or a filter of its error.
+    Spacecraft {
+        filtered: bool,
+    },
+    /// A planar arm whose tip follows a target, whose velocity is measured or not.
+    Tip {
+        measured: bool,
+    },
 }
 
 /// Laws of vehicles with one thrust.
@@ -54,6 +59,7 @@ pub(crate) enum Thrust {
     Continuous,
     Differentiable,
     Adaptive,
+    ByAcceleration,
 }
 
 /// What the agents do.
@@ -258,7 +264,7 @@ fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
         [Design::Continuous, Design::Differentiable, Design::WithoutAcceleration, Design::Swarm, Design::Observer];
     let follow = Course::Follow { design: pick(rng, &designs), margin: hundredths(rng, 1.05, 2.0), moves: true };
     let positions = Course::Agree { velocities: false };
-    let thrust = pick(rng, &[Thrust::Continuous, Thrust::Differentiable, Thrust::Adaptive]);
+    let thrust = pick(rng, &[Thrust::Continuous, Thrust::Differentiable, Thrust::Adaptive, Thrust::ByAcceleration]);
     let order = rng.random_range(1..=3);
     let (one, other) = (robot(rng), robot(rng));
     let kinds = [
@@ -271,8 +277,8 @@ fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
         (System::Vehicle(thrust), positions),
         (System::Chain(order), positions),
         (System::Chain(order), track),
-        (System::Spacecraft, track),
-        (System::Tip, track),
+        (System::Spacecraft { filtered: rng.random_bool(0.4) }, track),
+        (System::Tip { measured: rng.random_bool(0.4) }, track),
     ];
     pick(rng, &kinds)
 }
@@ -281,7 +287,9 @@ fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
 fn exact_order(system: System, course: Course) -> bool {
     match course {
         Course::Integral { .. } | Course::Follow { .. } => true,
-        Course::Track { .. } => matches!(system, System::Spacecraft | System::Tip | System::PositionOnly),
+        Course::Track { .. } => {
+            matches!(system, System::Spacecraft { .. } | System::Tip { .. } | System::PositionOnly)
+        }
         Course::Agree { .. } => matches!(system, System::Vehicle(_) | System::PositionOnly),
     }
 }
@@ -291,12 +299,12 @@ fn least_order(system: System, course: Course) -> usize {
         (Course::Integral { .. }, _) => 2,
         (Course::Follow { design: Design::Continuous, .. }, _) => 1,
         (Course::Follow { .. }, _) => 2,
-        (_, System::Vehicle(Thrust::Continuous)) => 2,
+        (_, System::Vehicle(Thrust::Continuous | Thrust::ByAcceleration)) => 2,
         (_, System::Vehicle(_)) => 3,
         (_, System::PositionOnly) => 3,
         (_, System::Chain(order)) => order,
         (Course::Agree { velocities: true }, System::Mass(_) | System::Arm | System::Ship) => 1,
-        (Course::Track { .. }, System::Spacecraft | System::Tip) => 0,
+        (Course::Track { .. }, System::Spacecraft { .. } | System::Tip { .. }) => 0,
         (Course::Agree { velocities: false } | Course::Track { .. } | Course::Agree { velocities: true }, _) => 2,
     }
 }

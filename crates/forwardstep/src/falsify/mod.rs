@@ -88,7 +88,7 @@ fn without_numbers(reason: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::case::{Course, Switching, System};
+    use super::case::{Course, Phase, Switching, System, Thrust};
     use forwardstep::check::prediction::{CascadeSpread, Fall};
 
     use super::judge::{decided, grown, judge, left_more, read};
@@ -112,9 +112,17 @@ mod tests {
     fn all_kinds_and_courses_are_drawn() {
         let cases: Vec<Case> = (0..600).map(|number| Case::draw(9, number)).collect();
         let has = |is: &dyn Fn(&Case) -> bool| assert!(cases.iter().any(is));
-        for system in
-            [System::Arm, System::Ship, System::PositionOnly, System::Spacecraft, System::Tip, System::Chain(3)]
-        {
+        for system in [
+            System::Arm,
+            System::Ship,
+            System::PositionOnly,
+            System::Spacecraft { filtered: false },
+            System::Spacecraft { filtered: true },
+            System::Tip { measured: false },
+            System::Tip { measured: true },
+            System::Chain(3),
+            System::Vehicle(Thrust::ByAcceleration),
+        ] {
             has(&|case| case.system == system);
         }
         has(&|case| matches!(case.system, System::Vehicle(_)));
@@ -124,11 +132,22 @@ mod tests {
         has(&|case| case.switching == Switching::Random && case.phases.len() == 3);
     }
 
+    #[test]
+    fn a_link_that_leads_both_ways_goes_as_a_whole_too() {
+        let edges = vec![(0, 1), (1, 0), (1, 2)];
+        let case = Case { phases: vec![Phase { edges, ..unlike().phases[0].clone() }], ..unlike() };
+        let smaller = case.smaller();
+        let left = |edges: &[(usize, usize)]| smaller.iter().any(|case| case.phases[0].edges == edges);
+        assert!(left(&[(1, 2)]), "both of it");
+        assert!(left(&[(1, 0), (1, 2)]) && left(&[(0, 1), (1, 0)]), "one of it, and one that leads one way");
+        assert!(!left(&[(0, 1)]), "nothing leads back along the last");
+    }
+
     /// κ₀ that differ under (a5) with a delay that jumps: the network may diverge, and `check` does not say otherwise.
     fn unlike() -> Case {
         let case = Case { roots: vec![vec![0.5, 1.0], vec![3.0, 1.0]], ..Case::draw(1, 6) };
         let starts = vec![[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
-        let phase = |edges| super::case::Phase { dwell_s: 0.4, edges, weight: None };
+        let phase = |edges| Phase { dwell_s: 0.4, edges, weight: None };
         Case {
             number: 6,
             alone: true,

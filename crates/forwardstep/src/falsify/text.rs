@@ -43,10 +43,10 @@ impl Case {
     fn axes(&self) -> usize {
         match self.system {
             System::Mass(axes) => axes,
-            System::Arm | System::Tip | System::PositionOnly => 2,
+            System::Arm | System::Tip { .. } | System::PositionOnly => 2,
             System::Ship | System::Vehicle(_) => 3,
             System::Chain(_) => 1,
-            System::Spacecraft => 4,
+            System::Spacecraft { .. } => 4,
         }
     }
 
@@ -62,14 +62,14 @@ impl Case {
         match self.system {
             System::Mass(axes) => format!("robot.point_mass = {{ mass_kg = 2, dimension = {axes} }}"),
             System::PositionOnly => "robot.point_mass = { mass_kg = 2, dimension = 2 }".into(),
-            System::Arm | System::Tip => ARM.into(),
+            System::Arm | System::Tip { .. } => ARM.into(),
             System::Ship => "robot.ship = { inertia = { surge_kg = 20, sway_kg = 25, yaw_kg_m2 = 3 } }".into(),
             System::Vehicle(_) => "robot.vehicle = { mass_kg = 1.5 }".into(),
             System::Chain(order) => {
                 let chi = ["sin(3*x)", "-x^3 - dx*abs(dx)", "-dx*d2x + tanh(x)"][(order - 1).min(2)];
                 format!("robot.chain = {{ order = {order}, chi = \"{chi}\", psi = \"2 + cos(x)\" }}")
             }
-            System::Spacecraft => {
+            System::Spacecraft { .. } => {
                 "robot.spacecraft = { inertia_kg_m2 = [[10, 0.5, -0.3], [0.5, 8, 0.2], [-0.3, 0.2, 6]] }".into()
             }
         }
@@ -82,9 +82,9 @@ impl Case {
             System::Vehicle(_) => format!("start.position_m = [{}, {}, {}]", 2.0 * at[0], 2.0 * at[1], at[2] - 2.0),
             System::Arm => format!("start.position_rad = {entries:?}"),
             // Away from where it is stretched.
-            System::Tip => format!("start.position_rad = [{}, {}]", at[0], 1.4 + 0.3 * at[1]),
+            System::Tip { .. } => format!("start.position_rad = [{}, {}]", 0.3 * at[0], 1.4 + 0.3 * at[1]),
             System::Ship => format!("start.position = {entries:?}"),
-            System::Spacecraft => format!(
+            System::Spacecraft { .. } => format!(
                 "start.spacecraft = {{ axis = [1, 0, 1], angle_rad = {}, rate_rad_s = [0.05, 0.03, {}] }}",
                 1.0 + at[0],
                 0.05 * at[1]
@@ -93,10 +93,15 @@ impl Case {
     }
 
     fn target(&self, rate: f64) -> String {
+        // The filter is shown for targets that keep still.
+        let still = self.system == (System::Spacecraft { filtered: true }) && rate < 0.8;
+        let rate = if still { 0.0 } else { rate };
         let wave = |k: usize| format!("\"0.3*sin({}*t + {k})\"", rate * (1.0 + 0.3 * k as f64));
         let entries: Vec<String> = match self.system {
-            System::Tip => vec![format!("\"0.8 + 0.3*cos({rate}*t)\""), format!("\"0.6 + 0.3*sin({rate}*t)\"")],
-            System::Spacecraft => (0..3).map(|k| format!("\"0.2*sin({rate}*t + {k})\"")).chain(["1".into()]).collect(),
+            System::Tip { .. } => vec![format!("\"0.8 + 0.3*cos({rate}*t)\""), format!("\"0.6 + 0.3*sin({rate}*t)\"")],
+            System::Spacecraft { .. } => {
+                (0..3).map(|k| format!("\"0.2*sin({rate}*t + {k})\"")).chain(["1".into()]).collect()
+            }
             System::Mass(_)
             | System::Arm
             | System::Ship
@@ -138,18 +143,26 @@ impl Case {
                     Thrust::Adaptive => {
                         "design.adaptive = { damping_per_s = 3, adaptation_gain = 0.2, estimate_start_kg = 1.2 }"
                     }
+                    Thrust::ByAcceleration => {
+                        "design.by_acceleration = { damping_per_s = 3, adaptation_gain = 0.2, estimate_start_kg = 1.2 }"
+                    }
                 };
                 format!("[law.thrust]\n{design}\n")
             }
             System::Chain(_) => "[law.linearising]\ngain_per_s = 2\n".into(),
-            System::Spacecraft => {
+            System::Spacecraft { filtered: true } => {
+                "[law.passivity_filter]\nerror_gain_n_m = 4\nfilter_gain_per_s = 1\ndamping = 3\n".into()
+            }
+            System::Spacecraft { filtered: false } => {
                 "[law.attitude]\nerror_gain_per_s2 = 0.5\nrate_gain_per_s = 1.2\nfilter_gain_per_s = 1\ndamping = 3\n"
                     .into()
             }
-            System::Tip => {
-                "[law.task_space]\ndamping.gain = 20\nadaptation_gain = 100\ntask_gain = 20\ntorque_share = 5\n\
-                            reference_gain_per_s = 3\nkinematic_gain = 1\nkinematic_start.scaled = 1.1\n"
-                    .into()
+            System::Tip { measured } => {
+                let velocity = if measured { "tip_velocity = \"measured\"\n" } else { "" };
+                format!(
+                    "[law.task_space]\ndamping.gain = 20\nadaptation_gain = 100\ntask_gain = 20\ntorque_share = 5\n\
+                     reference_gain_per_s = 3\nkinematic_gain = 1\nkinematic_start.scaled = 1.1\n{velocity}"
+                )
             }
         }
     }
