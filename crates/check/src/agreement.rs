@@ -18,6 +18,9 @@
 //! is conserved, where R_j = q_j for t ≥ 0 and q_j(0) + t q̇_j(0) before: the velocities sent before t = 0 are q̇_j(0), not
 //! zero. When everybody has come to rest at c, Q = c Σᵢ uᵢ [1 + dᵢ α₁/α₀ + Σⱼ w_ij (T_ij − 1/κ₀)].
 //!
+//! A chain of order k has α_{k−1} and s = x_{k−1} − z in the place of α₁ and s. A vehicle has x̃ = x − d in the place of q, and under (46), where
+//! it is itself the chain, Bᵢ = Xᵢ.
+//!
 //! (3) and (23) have q̈ in the place of ż: with Bᵢ = żᵢ + α₁ q̇ᵢ + α₀ qᵢ and Wᵢ = q̇ᵢ + α₁ qᵢ the same Q is conserved.
 //!
 //! With λ > 0 (Remark 4) Ḃᵢ gains λ sᵢ, so Q moves by Σᵢ uᵢ (λᵢ/α₀) ∫ sᵢ dt: in general only the run knows by how much, see
@@ -28,7 +31,7 @@
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
-use forwardstep_sim::{AgentSetup, Setup};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup, ThrustKind, ThrustLaw, VehicleModel};
 use thiserror::Error;
 
 use crate::conserved::Conserved;
@@ -36,6 +39,7 @@ use crate::fixed::{NotFixed, fixed};
 use crate::instance::designed;
 use crate::kinds::is_lagrangian;
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
+use crate::prediction::{NoIdeal, family_start};
 use crate::surroundings::dry_loss_w;
 
 /// The value that all agents will agree on.
@@ -101,8 +105,25 @@ pub enum NoPrediction {
     #[error("the controllers sample")]
     Sampled,
     /// Agents follow targets of their own, or a law whose tracking error stays in what is conserved.
-    #[error("only agents under the adaptive or the known law that agree with each other have one")]
+    #[error(
+        "only robots under the adaptive or the known law, vehicles and chains of derivatives that agree with each other have one"
+    )]
     Law,
+    /// Its start does not fit, or it keeps an offset that its law does not know.
+    #[error(transparent)]
+    Start(#[from] NoIdeal),
+    /// (57) and (58) bring ṡ to zero; s ends at a constant that depends on the run.
+    #[error("adaptation brings ṡ of agent number {} to zero and not s, and what is left of s moves it", agent + 1)]
+    ErrorStays {
+        /// Index of the agent.
+        agent: usize,
+    },
+    /// Nothing keeps apart what pushes it and what it agrees on.
+    #[error("agent number {} has no reference beside itself, so that pushes move what is agreed on", agent + 1)]
+    Pushed {
+        /// Index of the agent.
+        agent: usize,
+    },
     /// They follow a leader, who moves.
     #[error("everybody follows a leader")]
     Leader,
@@ -167,7 +188,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.following().is_some() {
         return Err(NoPrediction::Leader);
     }
-    if setup.all_track() || setup.agents.iter().any(|agent| !is_lagrangian(agent)) {
+    if setup.all_track() || !setup.agents.iter().all(conserves) {
         return Err(NoPrediction::Law);
     }
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
@@ -175,6 +196,17 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     }
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
+    }
+    let with = |design: fn(&ThrustKind) -> bool| {
+        move |own: &AgentSetup| own.law.downcast().is_some_and(|law: &ThrustLaw| design(&law.design))
+    };
+    let adapts = with(|design| design.estimate_start().is_some());
+    if let Some(agent) = setup.agents.iter().position(adapts) {
+        return Err(NoPrediction::ErrorStays { agent });
+    }
+    let is_its_own = with(|design| *design == ThrustKind::Continuous);
+    if let Some(agent) = setup.agents.iter().position(|own| is_its_own(own) && !own.pushes.is_empty()) {
+        return Err(NoPrediction::Pushed { agent });
     }
     let (edges, _) = fixed(&setup.network)?;
     let n = setup.agents.len();
@@ -200,7 +232,11 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
         .enumerate()
         .map(|(agent, a)| polynomial(&a.roots_per_s).map_err(|_| NoPrediction::Roots { agent }))
         .collect::<Result<_, _>>()?;
-    let conserved = Conserved { setup, heard: &by_receiver(n, edges), alpha: &alpha, influence: &influence };
+    let integral = setup.reference.is::<PureIntegral>();
+    let own = setup.agents.iter().enumerate();
+    let starts = own.map(|(agent, own)| family_start(agent, own, integral)).collect::<Result<Vec<_>, _>>()?;
+    let conserved =
+        Conserved { setup, starts: &starts, heard: &by_receiver(n, edges), alpha: &alpha, influence: &influence };
     let (mut value, mut error_bound) = (Vec::new(), Vec::new());
     for axis in 0..setup.agents[0].start.q.len() {
         let found = conserved.quotient(axis, influence_error)?;
@@ -208,6 +244,18 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
         error_bound.push(found.error_bound);
     }
     Ok(Prediction { value, error_bound, influence, influence_error })
+}
+
+/// Whether its tracking error drops out of Q.
+fn conserves(agent: &AgentSetup) -> bool {
+    if let Some(ThrustLaw { design, .. }) = agent.law.downcast() {
+        // The angular velocity of a rotorcraft is late, and (46) has nothing else that would be on time.
+        return *design != ThrustKind::Continuous || agent.robot.kind.is::<VehicleModel>();
+    }
+    let of_derivatives =
+        |model: &ChainModel| model.order() > 1 && matches!(model, ChainModel::Derivatives(_) | ChainModel::Vector(_));
+    is_lagrangian(agent)
+        || agent.law.is::<ChainLaw>() && agent.robot.kind.downcast::<ChainModel>().is_some_and(of_derivatives)
 }
 
 /// The edges by who hears.

@@ -4,7 +4,7 @@ use std::ops::{Add, Mul};
 
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{AgentSetup, Exchange, Setup};
+use forwardstep_sim::{Exchange, Setup};
 
 use crate::agreement::NoPrediction;
 use crate::manipulation::error_integral;
@@ -17,13 +17,13 @@ const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
 /// A sum, and the sum of the sizes of its terms, which tells what rounding can do to it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    value: f64,
-    size: f64,
+pub(crate) struct Tally {
+    pub(crate) value: f64,
+    pub(crate) size: f64,
 }
 
 impl Tally {
-    fn of(value: f64) -> Tally {
+    pub(crate) fn of(value: f64) -> Tally {
         Tally { value, size: value.abs() }
     }
 }
@@ -47,6 +47,8 @@ impl Mul<f64> for Tally {
 /// Q of a network.
 pub(crate) struct Conserved<'a> {
     pub(crate) setup: &'a Setup,
+    /// For each agent x₀, x₁ = z, … at the start.
+    pub(crate) starts: &'a [Vec<Vec<Tally>>],
     /// For each agent the edges along which it hears, with constant weights.
     pub(crate) heard: &'a [Vec<Edge>],
     /// For each agent the coefficients of its polynomial.
@@ -109,18 +111,15 @@ impl Conserved<'_> {
     /// Agent i's term of Q at t = 0, and what it is per unit of c at rest.
     fn contribution(&self, i: usize, axis: usize) -> (Tally, Tally) {
         let (setup, alpha) = (self.setup, &self.alpha[i]);
-        let start = &setup.agents[i].start;
-        let z = |k: usize| Tally::of(reference_start(&setup.agents[i], k, axis));
-        let (q, dq) = (Tally::of(start.q[axis]), Tally::of(start.dq[axis]));
+        let x = |r: usize| self.start(i, r, axis);
         let (b, w) = if setup.reference.is::<PureIntegral>() {
-            (q * alpha[0] + dq * alpha[1] + z(1), q * alpha[1] + dq)
+            (x(0) * alpha[0] + x(1) * alpha[1] + x(2), x(0) * alpha[1] + x(1))
         } else {
-            let above = || alpha.iter().enumerate().skip(2);
-            // α₁ q̇ − α₁ s with s = q̇ − z.
-            let b = q * alpha[0] + z(0) * alpha[1];
+            // α₁ q̇ − α₁ s is α₁ z, as s = q̇ − z.
+            let all = || alpha.iter().enumerate();
             (
-                above().fold(b, |sum, (r, a)| sum + z(r - 1) * *a),
-                above().fold(q * alpha[1], |sum, (r, a)| sum + z(r - 2) * *a),
+                all().fold(Tally::default(), |sum, (r, a)| sum + x(r) * *a),
+                all().skip(1).fold(Tally::default(), |sum, (r, a)| sum + x(r - 1) * *a),
             )
         };
         let velocity = match setup.exchange {
@@ -133,8 +132,7 @@ impl Conserved<'_> {
         for edge in &self.heard[i] {
             let Some(weight) = edge.weight.constant() else { continue };
             let delay_s = setup.network.delays[edge.delay].max_s();
-            let sender = &setup.agents[edge.from].start;
-            let (q, dq) = (Tally::of(sender.q[axis]), Tally::of(sender.dq[axis]));
+            let (q, dq) = (self.start(edge.from, 0, axis), Tally::of(setup.agents[edge.from].start.dq[axis]));
             let ramp = q + dq * -delay_s;
             degree += weight;
             past = past + (q * delay_s + ramp * -velocity) * weight;
@@ -151,21 +149,17 @@ impl Conserved<'_> {
         if agent.manipulability == 0.0 {
             return Ok(Tally::default());
         }
-        let integral = error_integral(agent, axis, reference_start(agent, 0, axis));
+        let integral = error_integral(agent, axis, self.start(i, 1, axis).value);
         let shift = integral.map(|s| Tally::of(agent.manipulability / self.alpha[i][0] * s));
         shift.ok_or(NoPrediction::Manipulability { agent: i })
+    }
+
+    /// x_r of agent i at the start.
+    fn start(&self, i: usize, r: usize, axis: usize) -> Tally {
+        self.starts[i].get(r).and_then(|x| x.get(axis)).copied().unwrap_or_default()
     }
 }
 
 fn uncertain(error_bound: f64) -> NoPrediction {
     NoPrediction::Uncertain { error_bound: if error_bound >= 0.0 { error_bound } else { f64::INFINITY } }
-}
-
-/// z^(k)(0), with the defaults of [`forwardstep_sim::Start`].
-fn reference_start(agent: &AgentSetup, k: usize, axis: usize) -> f64 {
-    match agent.start.reference.get(k) {
-        Some(z) => z[axis],
-        None if k == 0 => agent.start.dq[axis],
-        None => 0.0,
-    }
 }

@@ -19,6 +19,8 @@ mod rate;
 mod rubbing;
 #[path = "predictions/smoothness.rs"]
 mod smoothness;
+#[path = "predictions/vehicles.rs"]
+mod vehicles;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;

@@ -16,7 +16,7 @@
 use std::collections::VecDeque;
 
 use forwardstep_sim::reference::{Consensus, PureIntegral};
-use forwardstep_sim::{Exchange, Recording, Setup, Signal};
+use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustKind, ThrustLaw};
 use thiserror::Error;
 
 use crate::instance::designed;
@@ -41,7 +41,7 @@ pub enum NoCascade {
     #[error("the coupling is nonlinear")]
     Coupling,
     /// A law whose columns are not those of a robot under (6)–(7).
-    #[error("agent number {} is no robot under the adaptive or the known law", agent + 1)]
+    #[error("agent number {} is no robot under the adaptive or the known law, and no vehicle that a reference leads", agent + 1)]
     Law {
         /// Index of the agent.
         agent: usize,
@@ -132,13 +132,13 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     if !setup.network.coupling.is_linear() {
         return Err(NoCascade::Coupling);
     }
-    if let Some(agent) = setup.agents.iter().position(|agent| !is_lagrangian(agent)) {
+    if let Some(agent) = setup.agents.iter().position(|agent| !has_columns(agent)) {
         return Err(NoCascade::Law { agent });
     }
     if let Some(agent) = setup.agents.iter().position(|agent| agent.roots_per_s.all_real().is_none()) {
         return Err(NoCascade::ComplexRoots { agent });
     }
-    let axes = |agent: &forwardstep_sim::AgentSetup| agent.robot.axes.len();
+    let axes = |agent: &AgentSetup| agent.robot.axes.len();
     if setup.agents.iter().any(|agent| axes(agent) != axes(&setup.agents[0])) {
         return Err(NoCascade::Axes);
     }
@@ -151,6 +151,12 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
         }
         Some(_) | None => Ok(()),
     }
+}
+
+/// Whether its positions, velocities and references are recorded, and agree as they stand.
+fn has_columns(agent: &AgentSetup) -> bool {
+    let leads = |law: &ThrustLaw| law.design != ThrustKind::Continuous && agent.target.is_none();
+    is_lagrangian(agent) || agent.law.downcast().is_some_and(leads)
 }
 
 /// The columns of x₀ … x_ℓ: q, q̇, ż, z̈, ….

@@ -6,18 +6,24 @@
 //!
 //! With s ≡ 0 all laws of consensus lead to one equation: x₀ = q, x₁ = q̇, … x_ℓ with dx_r/dt = x_{r+1} and
 //! dXᵢ/dt = −Σⱼ w_ij (Xᵢ − heard_j), whatever part of x is measured and whatever part is constructed. A chain of order k
-//! starts it from x₀ … x_{k−2} and z, ż, …; a robot from q, z, ż, ….
+//! starts it from x₀ … x_{k−2} and z, ż, …; a robot from q, z, ż, …; a vehicle, which agrees with the others less its offset d, from
+//! x − d, z, ż, …, and under (46), where it is itself the chain, from x − d, ẋ − ḋ, ẍ − d̈.
 
 use std::sync::Arc;
 
 use forwardstep_core::Gain;
+use forwardstep_core::attitude::normalized;
+use forwardstep_core::controller::Jet;
+use forwardstep_core::plant::Vehicle;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::reference::{Consensus, PureIntegral};
 use forwardstep_sim::{
-    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, Setup, Solver, Start,
+    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, Solver, Start,
+    ThrustKind, ThrustLaw, VehicleModel,
 };
 use thiserror::Error;
 
+use crate::conserved::Tally;
 use crate::instance::designed;
 use crate::kinds::is_lagrangian;
 
@@ -42,7 +48,7 @@ pub enum NoIdeal {
         /// Index of the agent.
         agent: usize,
     },
-    /// It agrees with the others up to an offset.
+    /// It agrees with the others up to an offset, and its law knows none.
     #[error("agent number {} keeps an offset from where the others agree", agent + 1)]
     Offset {
         /// Index of the agent.
@@ -62,7 +68,7 @@ pub enum NoIdeal {
 /// has no meaning or no effect while s ≡ 0 is left out: gains, estimates, λ of Remark 4, pushes, limits, sampling. Under
 /// (aa10), (a1), (a5) and (24) q̇(0) becomes z(0), which keeps what [`crate::predict`] finds conserved unless velocities are
 /// exchanged with a delay: those sent before t = 0 are then z(0), not q̇(0). Under (3) and (23) z(0) becomes q̇(0), which
-/// keeps it always.
+/// keeps it always. Vehicles in formation are replaced by what agrees, x − d.
 ///
 /// # Errors
 /// [`NoIdeal`] when the reference of some agent depends on more than the network.
@@ -122,39 +128,75 @@ fn follower(agent: usize, own: &AgentSetup, integral: bool) -> Result<AgentSetup
 
 /// q, q̇ = z, ż, … at the start.
 fn start(agent: usize, own: &AgentSetup, integral: bool) -> Result<Start, NoIdeal> {
-    if own.target.is_some() {
-        return Err(NoIdeal::Offset { agent });
-    }
+    let numbers = |x: Vec<Tally>| x.into_iter().map(|x| x.value).collect::<Vec<_>>();
+    let mut x = family_start(agent, own, integral)?.into_iter().map(numbers);
+    let (q, reference) = (x.next().unwrap_or_default(), x.collect::<Vec<_>>());
+    Ok(Start { q, dq: reference.first().cloned().unwrap_or_default(), rest: Vec::new(), reference })
+}
+
+/// x₀, x₁ = z, … at the start, as many as are not zero and two at least, with the sizes of what they were subtracted from.
+pub(crate) fn family_start(agent: usize, own: &AgentSetup, integral: bool) -> Result<Vec<Vec<Tally>>, NoIdeal> {
     let order = order(own).ok_or(NoIdeal::Law { agent })?;
     let (start, axes) = (&own.start, own.robot.axes.len());
     // x₀ … x_{k−2}, then what z follows.
-    let mut measured: Vec<Vec<f64>> = [&start.q, &start.dq, &start.rest]
-        .iter()
-        .flat_map(|part| part.chunks(axes.max(1)))
-        .map(<[f64]>::to_vec)
-        .collect();
+    let tallies = |x: &[f64]| x.iter().copied().map(Tally::of).collect::<Vec<_>>();
+    let mut measured: Vec<Vec<Tally>> = match own.law.downcast() {
+        Some(law) => in_formation(own, law).ok_or(NoIdeal::Start { agent })?,
+        None if own.target.is_some() => return Err(NoIdeal::Offset { agent }),
+        None => {
+            [&start.q, &start.dq, &start.rest].iter().flat_map(|part| part.chunks(axes.max(1))).map(tallies).collect()
+        }
+    };
     if measured.len() < order || measured.iter().any(|x| x.len() != axes) {
         return Err(NoIdeal::Start { agent });
     }
-    let followed = if own.law.is::<PositionOnlyLaw>() { vec![0.0; axes] } else { measured[order - 1].clone() };
+    let at_rest = vec![Tally::default(); axes];
+    let followed = if own.law.is::<PositionOnlyLaw>() { at_rest.clone() } else { measured[order - 1].clone() };
     let keeps_velocity = integral || start.reference.is_empty();
-    let z = if keeps_velocity { followed } else { start.reference[0].clone() };
+    let z = if keeps_velocity { followed } else { tallies(&start.reference[0]) };
     measured.truncate(order - 1);
     measured.push(z);
-    measured.extend(start.reference.iter().skip(1).cloned());
-    measured.resize(measured.len().max(2), vec![0.0; axes]);
+    measured.extend(start.reference.iter().skip(1).map(|x| tallies(x)));
+    measured.resize(measured.len().max(2), at_rest);
     if measured.iter().any(|x| x.len() != axes) || measured.len() > own.roots_per_s.len() + 1 {
         return Err(NoIdeal::Start { agent });
     }
-    let mut x = measured.into_iter();
-    let (q, reference) = (x.next().unwrap_or_default(), x.collect::<Vec<_>>());
-    Ok(Start { q, dq: reference.first().cloned().unwrap_or_default(), rest: Vec::new(), reference })
+    Ok(measured)
+}
+
+/// x − d, ẋ − ḋ and ẍ − d̈ of a vehicle at the start, the last where its law has no z; `None` when its start does not fit.
+fn in_formation(own: &AgentSetup, law: &ThrustLaw) -> Option<Vec<Vec<Tally>>> {
+    let start = &own.start;
+    let mut measured: Vec<Vec<Tally>> =
+        [&start.q, &start.dq].map(|x| x.iter().copied().map(Tally::of).collect()).into();
+    if law.design == ThrustKind::Continuous {
+        let kind = &own.robot.kind;
+        let of_vehicle = kind.downcast().map(|VehicleModel { gravity }| *gravity);
+        let gravity = of_vehicle.or_else(|| Some(kind.downcast::<RotorcraftModel>()?.gravity))?;
+        let mass = *own.robot.theta.first()?;
+        let attitude = normalized(start.rest.get(..4)?.try_into().ok()?);
+        let sigma = law.thrust_start.unwrap_or(mass * gravity);
+        let weight = Tally { value: 0.0, size: gravity + (sigma / mass).abs() };
+        measured.push(Vehicle { mass, gravity }.acceleration(attitude, sigma).map(|x| weight + Tally::of(x)).to_vec());
+    }
+    if let Some(offset) = &own.target {
+        let mut jets = vec![Jet::default(); offset.axes()];
+        offset.jets(0.0, &mut jets);
+        for (r, x) in measured.iter_mut().enumerate() {
+            x.iter_mut().zip(&jets).for_each(|(x, d)| *x = *x + Tally::of(-d[r]));
+        }
+    }
+    Some(measured)
 }
 
 /// k, where z follows the derivative of order k − 1 of the position.
 pub(crate) fn order(own: &AgentSetup) -> Option<usize> {
     if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
         return Some(2);
+    }
+    if let Some(ThrustLaw { design, .. }) = own.law.downcast() {
+        // Under (46) nothing leads the vehicle: its own acceleration stands in the place of a reference.
+        return Some(if *design == ThrustKind::Continuous { 3 } else { 2 });
     }
     own.law.downcast::<ChainLaw>()?;
     match own.robot.kind.downcast()? {

@@ -6,7 +6,7 @@ use forwardstep_check::NoIdeal;
 use forwardstep_check::prediction::{
     Course, GuaranteedRate, NoCourse, NoGuaranteedRate, NoPeriodRate, NoRate, PeriodRate, Rate, Unfinished,
 };
-use forwardstep_sim::Setup;
+use forwardstep_sim::{Setup, ThrustLaw};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -187,7 +187,7 @@ impl Predictions {
                 let settled = settled.unwrap_or_default();
                 let then = format!("disagreement then {} {unit}", number_words(last));
                 sentences.push(format!("{reached} by {end_s} s{settled}; {}", then.trim_end()));
-                sentences.extend(course.value_sentence());
+                sentences.extend(course.value_sentence(setup));
                 sentences.extend(course.torque_sentence(setup));
             }
         }
@@ -272,13 +272,17 @@ impl CourseFound {
     }
 
     /// The middle of the interval that the value agreed upon lies in, if there is one.
-    fn value_sentence(&self) -> Option<String> {
+    fn value_sentence(&self, setup: &Setup) -> Option<String> {
         let within = self.within.as_ref().filter(|_| self.reached)?;
         let middles: Vec<String> =
             within.iter().take(MOST_AXES).map(|[low, high]| number_words(low + 0.5 * (high - low))).collect();
         let widest = within.iter().map(|[low, high]| 0.5 * (high - low)).fold(0.0, f64::max);
         let more = if within.len() > MOST_AXES { ", …" } else { "" };
-        Some(format!("value agreed upon ({}{more}), to ± {}", middles.join(", "), number_words(widest)))
+        // (58) ends where ṡ is zero, not s.
+        let leaves_some = |law: &ThrustLaw| law.design.estimate_start().is_some();
+        let moved = setup.agents.iter().any(|agent| agent.law.downcast().is_some_and(leaves_some));
+        let moved = if moved { "; an s that stays, as adapted masses leave one, moves it" } else { "" };
+        Some(format!("value agreed upon ({}{more}), to ± {}{moved}", middles.join(", "), number_words(widest)))
     }
 
     fn torque_sentence(&self, setup: &Setup) -> Option<String> {
