@@ -149,7 +149,7 @@ impl Conserved<'_> {
         if agent.manipulability == 0.0 {
             return Ok(Tally::default());
         }
-        let integral = error_integral(agent, axis, self.start(i, 1, axis).value);
+        let integral = error_integral(agent, axis);
         let shift = integral.map(|s| Tally::of(agent.manipulability / self.alpha[i][0] * s));
         shift.ok_or(NoPrediction::Manipulability { agent: i })
     }

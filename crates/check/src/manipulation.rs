@@ -18,13 +18,13 @@ use forwardstep_sim::{AgentSetup, Known};
 
 use crate::surroundings::dry_loss_w;
 
-/// ∫ s dt over all time on one axis, if it is known before the run. `z_0` is z(0).
-pub(crate) fn error_integral(agent: &AgentSetup, axis: usize, z_0: f64) -> Option<f64> {
+/// ∫ s dt over all time on one axis, if it is known before the run.
+pub(crate) fn error_integral(agent: &AgentSetup, axis: usize) -> Option<f64> {
     let Known { damping } = agent.law.downcast()?;
     if agent.enforce_limits {
         return None;
     }
-    let s_0 = agent.start.dq[axis] - z_0;
+    let s_0 = agent.start.reference.first().map_or(0.0, |z| agent.start.dq[axis] - z[axis]);
     if agent.pushes.is_empty() && dry_loss_w(agent).is_none() && follows(agent) {
         return Some(0.0);
     }

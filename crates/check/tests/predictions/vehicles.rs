@@ -227,9 +227,20 @@ fn eq_38_the_value_that_chains_agree_on_is_known_before_the_run() {
             agent.roots_per_s =
                 (0..order).map(|r| 1.1 + 0.4 * r as f64 + 0.1 * index as f64).collect::<Vec<_>>().into();
             agent.start.reference = (5..7).map(|k| vec![entry(k)]).collect();
+            if index == 1 {
+                let effect = Effect::Torque(Course::Each(vec![Function::Constant(1.5)]));
+                agent.pushes = vec![Push { effect, from_s: 1.0, until_s: 3.0 }];
+            }
             agent
         });
-        let setup = fixed(agents.collect(), 90.0);
+        let mut agents: Vec<AgentSetup> = agents.collect();
+        if order == 2 {
+            // Whoever adapts agrees there too.
+            let mut adaptive = chain(&Expression::number(2.0), 1, true);
+            (adaptive.start, adaptive.roots_per_s) = (agents[2].start.clone(), agents[2].roots_per_s.clone());
+            agents[2] = adaptive;
+        }
+        let setup = fixed(agents, 90.0);
         let (prediction, outcome) = (predict(&setup).unwrap(), run(&setup));
         for agent in 0..4 {
             let x = *column(&outcome, agent, Signal::Position, 0).last().unwrap();

@@ -12,6 +12,8 @@ use super::interval::Interval;
 pub const MOST_DIGITS: usize = 64;
 /// Decimal exponents, and places after the point, are at most this large.
 const MOST_EXPONENT: i32 = 300;
+/// Those of the shortest decimal of any `f64`, which has 17 digits at most.
+const MOST_OF_F64: i32 = 324 + 17;
 
 /// A real constant: a rational number such as 1/10, or an enclosed irrational one such as π. `f64` arithmetic uses the nearest
 /// `f64`, everything else the number itself.
@@ -38,6 +40,11 @@ impl Number {
     /// A number without sign as it is written in decimals, such as `0.1` or `2.5e-3`; `None` when it is not one, or has more than
     /// [`MOST_DIGITS`] digits or an exponent beyond 300.
     pub fn decimal(text: &str) -> Option<Self> {
+        Number::ratio(text, MOST_EXPONENT).map(Number::rational)
+    }
+
+    /// What `text` writes, with so large an exponent at most.
+    fn ratio(text: &str, most_exponent: i32) -> Option<BigRational> {
         let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
         let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
         let count = whole.len() + part.len();
@@ -45,23 +52,18 @@ impl Number {
             return None;
         }
         let places = exponent.parse::<i32>().ok()?.checked_sub(part.len() as i32)?;
-        if places.abs() > MOST_EXPONENT {
+        if places.abs() > most_exponent {
             return None;
         }
         let power = "0".repeat(places.unsigned_abs() as usize);
         let ratio = if places < 0 { format!("{whole}{part}/1{power}") } else { format!("{whole}{part}{power}") };
-        Some(Number::rational(ratio.parse().ok()?))
+        ratio.parse().ok()
     }
 
-    /// What somebody wrote who got this `f64`: the shortest decimal that reads as it. The `f64` itself where that decimal has an
-    /// exponent beyond 300; zero for what is not finite.
+    /// What somebody wrote who got this `f64`: the shortest decimal that reads as it; zero for what is not finite.
     pub fn written(value: f64) -> BigRational {
-        let decimal = Number::decimal(&format!("{:e}", value.abs())).and_then(|number| number.exact());
-        match decimal {
-            Some(size) if value < 0.0 => -size,
-            Some(size) => size,
-            None => BigRational::from_float(value).unwrap_or_else(BigRational::zero),
-        }
+        let size = Number::ratio(&format!("{:e}", value.abs()), MOST_OF_F64).unwrap_or_else(BigRational::zero);
+        if value < 0.0 { -size } else { size }
     }
 
     /// A rational number.

@@ -66,6 +66,22 @@ fn decimals_are_kept_as_they_are_written() {
 }
 
 #[test]
+fn every_number_was_written_as_its_shortest_decimal() {
+    let ratio = |text: &str| text.parse().unwrap();
+    for (value, places) in [(1e-320, 320), (5e-324, 324), (-1e-305, 305)] {
+        let size = value / f64::abs(value);
+        let digit = if places == 324 { 5.0 } else { 1.0 };
+        assert_eq!(Number::written(value), ratio(&format!("{}/1{}", size * digit, "0".repeat(places))), "{value:e}");
+    }
+    // Sixteen places after the point as well.
+    let places = "0".repeat(316);
+    assert_eq!(Number::written(1.234_567_890_123_456_4e-300), ratio(&format!("12345678901234564/1{places}")));
+    assert_eq!(Number::written(1e308), ratio(&format!("1{}", "0".repeat(308))));
+    assert_eq!(Number::written(-0.1), ratio("-1/10"));
+    assert!([0.0, -0.0, f64::NAN, f64::INFINITY].into_iter().all(|value| Number::written(value) == ratio("0")));
+}
+
+#[test]
 fn constants_are_exact_where_they_are_rational() {
     let zero = written("0.1") + written("0.2") - written("0.3");
     assert!(zero.eval(0.0) > 0.0, "in f64 it is not zero");
