@@ -109,14 +109,12 @@ def read_certificate(text):
             parse_float=lambda number: no(f"{number[:40]} stands without quotes: it would be rounded"),
             parse_constant=lambda word: no(f"{word} is not a number"),
             parse_int=lambda digits: int(digits) if len(digits) <= 30 else no("a whole number is too long")), "certificate")
-    except (RecursionError, ValueError) as error:
-        no(f"is not JSON, or nested too deeply: {error}")
+    except (RecursionError, ValueError) as error: no(f"is not JSON, or nested too deeply: {error}")
 
 def read_toml(text):
     # What runs is the double next to a number, as its shortest decimal; formulas are texts, and are kept as they are written.
     try: return tomllib.loads(text, parse_float=lambda number: decimal(repr(float(decimal(number)))))
-    except (RecursionError, ValueError) as error:
-        raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
+    except (RecursionError, ValueError) as error: raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
 # `value`, which has a meaning under this condition.
 def such(condition, words, value=None):
@@ -354,8 +352,7 @@ def formula(text, names=("t",)):
     such(legible, "a formula is too long, or has a character that no formula has")
     quoted = NUMBER.sub(lambda match: f"_('{match.group()}')", " ".join(plain.split()))
     try: return shaped(ast.parse(quoted.replace("^", "**"), mode="eval").body, names, 0)
-    except (SyntaxError, RecursionError, MemoryError, ValueError):
-        raise Meaningless(f"`{plain[:60]}` is no formula") from None
+    except (SyntaxError, RecursionError, MemoryError, ValueError): raise Meaningless(f"`{plain[:60]}` is no formula") from None
 
 def shaped(node, names, depth):
     such(depth <= MOST_NESTED, "a formula is nested too deeply")
@@ -443,8 +440,7 @@ def enclose(tree, t):
 
 def attempt(of, *arguments):
     try: return of(*arguments)
-    except Undecided:
-        return None
+    except Undecided: return None
 
 def in_one_pass(tree, t):
     kind = tree[0]
@@ -917,8 +913,7 @@ def read(path):
         such(path.stat().st_size <= MOST_BYTES, f"{path} is too large")
         data = path.read_bytes()
         return data, data.decode("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise Meaningless(f"{path} cannot be read: {error}") from None
+    except (OSError, UnicodeDecodeError) as error: raise Meaningless(f"{path} cannot be read: {error}") from None
 
 # --- Which theorem speaks, and what it asks for
 
@@ -1021,7 +1016,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "no-routh", "half-turn", "outside", "left-null", "fades", "changes-sign")
+             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "changes-sign")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1050,10 +1045,8 @@ class Claim:
         fields = check.__code__.co_varnames[1:check.__code__.co_argcount]
         self.proof.only("kind", *fields)
         needed_ = len(fields) - len(check.__defaults__ or ())
-        try:
-            found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
-        except Undecided as reason:
-            return UNCHECKED, str(reason)
+        try: found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
+        except Undecided as reason: return UNCHECKED, str(reason)
         words, always = found if isinstance(found, tuple) else (found or kind, True)
         shown = (VIOLATED,) if kind in WITNESSES else (HOLDS, ON_RUN) if always else (ON_RUN,)
         require(self.entry.field("answer"), self.answer in shown, f"is more than the proof shows: {' or '.join(shown)}")
@@ -1889,6 +1882,17 @@ def small_factor(claim, agent):
     found = {name: size(within) < floor for name, within, floor in factors(claim.scenario)}
     require(agent, found.get(agent.text(), False), "has no constant factor below its floor")
 
+# An equation without a slope along its next state while the others are 0.7.
+@rule("input-factor", "unmoved")
+def unmoved(claim, agent, equation):
+    own, k = find(claim, agent), equation.count()
+    require(agent, own.robot == "pure_feedback", "is no pure-feedback chain")
+    known, rows = own.body.get("known", []), own.body.get("regressors", [])
+    require(equation, 0 < k < len(known), "is none that a next state moves")
+    for text in [known[k - 1], *(rows[k - 1] if rows else [])]:
+        plain = re.sub(r"\bx(\d+)\b", lambda state: "t" if int(state[1]) == k + 1 else "0.7", str(text))
+        require(equation, size(enclose(derivative(formula(plain)), WHOLE)) == 0, f"is moved by x{k + 1}")
+
 # A vector that a constant ψ takes to zero.
 @rule("input-factor", "null-vector")
 def null_vector(claim, agent, vector):
@@ -1919,8 +1923,7 @@ def check(certificate_text, scenario_text, folder, digests=True):
             found.append(("agreement", [], HOLDS, ACCEPTED, "uᵀL = 0 and Σu = 1", ""))
         if digests: same(document.field("scenario"), scenario_text, scenario.inputs)
         return found
-    except (Rejected, Meaningless, Undecided) as error:
-        failure = error.outcome, str(error), getattr(error, "place", "")
+    except (Rejected, Meaningless, Undecided) as error: failure = error.outcome, str(error), getattr(error, "place", "")
     except (RecursionError, MemoryError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError) as error:
         failure = REJECTED, f"cannot be checked in this form ({type(error).__name__}: {str(error)[:80]})", ""
     return [*found, ("certificate", [], "", *failure)]
@@ -1934,8 +1937,7 @@ def outcome(scenario, entry, asked, spoken):
         require(entry, key in asked or claim.id == "target-within-reach", "is not asked for by this scenario")
         spoken.add(key)
     try: return claim.id, claim.agents, claim.answer, *claim.judge(), ""
-    except Rejected as error:
-        return claim.id, claim.agents, claim.answer, REJECTED, str(error), error.place
+    except Rejected as error: return claim.id, claim.agents, claim.answer, REJECTED, str(error), error.place
 
 # The shares u ≥ 0 with uᵀL = 0 and Σu = 1 of a fixed network: what each agent's start counts in the value agreed upon.
 def agreed(scenario, node):

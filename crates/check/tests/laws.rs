@@ -184,6 +184,17 @@ fn eq_43_a_factor_of_the_input_holds_where_it_keeps_away_from_zero_in_every_stat
     assert_eq!(answer(&alone(cascade(strict(), one(), 1)), About::Divisor), Answer::Holds);
     assert_eq!(answer(&alone(cascade(strict(), x().cos_of() + 2.0, 1)), About::Divisor), Answer::Holds);
     assert_eq!(answer(&alone(cascade(bent(), one(), 1)), About::Divisor), Answer::Watched);
+    // Nothing moves the first equation where its slope along x_2 is zero, whatever it is written with.
+    let level = || strict() * 0.0 + x().sin_of();
+    for known in [x(), level(), strict() - strict(), (strict() * 0.0).cos_of()] {
+        let report = check(&alone(cascade(known, one(), 1)));
+        let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::InputFactor).unwrap();
+        assert_eq!(
+            (found.answer(), &*found.because()),
+            (Answer::Violated, "x2 does not move equation 1 of agent: its slope is 0 for ever")
+        );
+        assert_eq!(found.change().unwrap(), "a term of x2 in equation 1 of agent, such as x2 itself");
+    }
 }
 
 #[test]

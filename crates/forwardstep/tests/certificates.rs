@@ -267,9 +267,14 @@ fn complex_roots_are_certified_where_a_hurwitz_polynomial_is_enough() {
 
 /// What the checker says of a hypothesis by the certificate of a shipped scenario beside another text.
 fn outcome_beside(name: &str, text: &str, id: &str) -> (String, String) {
+    outcome_of_pair(&file_of(name), text, id)
+}
+
+/// The same by the certificate of a file.
+fn outcome_of_pair(scenario: &Path, text: &str, id: &str) -> (String, String) {
     let folder = folder();
-    let certificate = certified(file_of(name).to_str().unwrap(), folder.path());
-    let file = folder.path().join(format!("{name}.toml"));
+    let certificate = certified(scenario.to_str().unwrap(), folder.path());
+    let file = folder.path().join("beside.toml");
     fs::write(&file, text).unwrap();
     let arguments = ["forwardstep_checker.py", "--json", "--ignore-digests"];
     let files = [certificate.to_str().unwrap(), file.to_str().unwrap()];
@@ -299,6 +304,32 @@ fn a_certificate_is_rejected_beside_roots_that_have_lost_the_property() {
     // The period of 1 ms is short enough for 100 swings per unit of decay, not for more.
     let fast = "[{ real = 0.02, imaginary = 5.0 }]";
     is(outcome("theorem-9", (two, fast), "set-valued-sign"), "rejected", "is not so by the text");
+}
+
+#[test]
+fn an_equation_that_its_next_state_does_not_move_is_a_witness() {
+    let folder = folder();
+    let file = folder.path().join("unmoved.toml");
+    let shipped = fs::read_to_string(file_of("pure-feedback")).unwrap();
+    let with = |first: &str, regressor: &str| {
+        let text = shipped.replace("x2 + 0.2*x2^3", first).replace("x1^2 + 0.3*tanh(x2)", regressor);
+        assert_ne!(text, shipped);
+        text
+    };
+    for (first, regressor) in [("x1^2", "sin(x1)"), ("x1^2 + 0*x2", "x1^2"), ("x2 - x2", "tanh(0*x2)")] {
+        let text = with(first, regressor);
+        fs::write(&file, &text).unwrap();
+        assert_eq!(judged(&text, "input-factor"), ("violated".to_owned(), "accepted".to_owned()), "{first}");
+        // Beside a chain that is moved it shows nothing.
+        for moved in [&shipped, &with("x1^2 + x2", "x1^2"), &with("x1^2", "x1^2 + 0.01*x2")] {
+            let (outcome, words) = outcome_of_pair(&file, moved, "input-factor");
+            assert!(outcome == "rejected" && words.contains("is moved by x2"), "{outcome}: {words}");
+        }
+    }
+    // What moves weakly, or through a parameter alone, is left to the run.
+    for (first, regressor) in [("x1^2", "x2"), ("1e-9*x2", "x1^2")] {
+        assert_eq!(judged(&with(first, regressor), "input-factor").0, "watched during the run", "{first}");
+    }
 }
 
 #[test]

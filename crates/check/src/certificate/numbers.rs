@@ -8,7 +8,7 @@ use num_rational::BigRational;
 use super::producers::Claim;
 use super::proof::Proof;
 use crate::Answer;
-use crate::kinds::chain::undefined_state;
+use crate::kinds::chain::{undefined_state, unmoved};
 use crate::kinds::matrix_factor::null_vector;
 use crate::surroundings::acts;
 use crate::theorems::slowest_per_s;
@@ -104,7 +104,14 @@ pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
                 let mut agents = setup.agents.iter().enumerate();
                 agents.find_map(|(index, agent)| Some(Proof::NullVector(index, null_vector(matrix_of(agent)?)?)))
             };
-            small.map(Proof::SmallFactor).or_else(null)
+            let unmoved = || {
+                let mut agents = setup.agents.iter().enumerate();
+                agents.find_map(|(index, agent)| match agent.robot.kind.downcast()? {
+                    ChainModel::Cascade(terms) if !terms.is_strict() => Some(Proof::Unmoved(index, unmoved(terms)?)),
+                    ChainModel::Cascade(_) | ChainModel::Derivatives(_) | ChainModel::Vector(_) => None,
+                })
+            };
+            small.map(Proof::SmallFactor).or_else(null).or_else(unmoved)
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }

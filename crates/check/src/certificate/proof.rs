@@ -81,6 +81,8 @@ pub enum Proof {
     FactorAway,
     /// Witness: the factor of the input of this agent is a constant below its floor.
     SmallFactor(usize),
+    /// An agent whose chain has an equation that its next state does not move, and which, from zero.
+    Unmoved(usize, usize),
     /// Witness: the factor of the input of this agent is a constant matrix that takes this vector to zero.
     NullVector(usize, Vec<BigRational>),
     /// The scalar part of the error of an attitude starts with this size at least.

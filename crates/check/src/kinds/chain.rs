@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::expression::{Domain, Expression, Interval, Intervals};
+use forwardstep_core::expression::{Domain, Expression, Graph, Interval, Intervals};
 use forwardstep_core::plant::CascadeTerms;
 use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
@@ -145,7 +145,7 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
                 Some(KindEvidence::FactorBelowFloor { agent, value, floor })
             }
             Factor::Matrix(input) => matrix_factor::null_vector(input).map(|_| KindEvidence::FactorSingular { agent }),
-            Factor::More(terms) => cut(terms).then_some(KindEvidence::FactorBelowFloor { agent, value: 0.0, floor }),
+            Factor::More(terms) => unmoved(terms).map(|equation| KindEvidence::Unmoved { agent, equation }),
         }
     });
     let vanishing =
@@ -195,11 +195,21 @@ fn factor(model: &ChainModel) -> Factor<'_> {
     }
 }
 
-/// Whether some equation of a chain does not hold the state that is to move it.
-fn cut(terms: &CascadeTerms) -> bool {
-    let holds = |expression: &Expression, next: usize| expression.has(next);
-    let equations = terms.known().iter().zip(terms.regressors()).enumerate().take(terms.order().saturating_sub(1));
-    equations.into_iter().any(|(k, (known, row))| !holds(known, k + 1) && !row.iter().any(|entry| holds(entry, k + 1)))
+/// An equation of a chain whose slope along the state that is to move it is zero, whatever ϑ is.
+pub(crate) fn unmoved(terms: &CascadeTerms) -> Option<usize> {
+    let mut equations = terms.known().iter().zip(terms.regressors()).take(terms.order().saturating_sub(1)).enumerate();
+    let unmoved = equations.find(|(k, (known, row))| {
+        let mut all = std::iter::once(*known).chain(row.iter());
+        all.all(|expression| !expression.has(k + 1) || is_level(expression, k + 1))
+    });
+    unmoved.map(|(k, _)| k)
+}
+
+/// Whether the slope along a variable is seen to be zero, as that of 0 x is. Of what has kinks nothing is seen.
+fn is_level(expression: &Expression, along: usize) -> bool {
+    let mut graph = Graph::new(expression.variables());
+    let slope = graph.import(expression).and_then(|value| graph.derivative(value, along));
+    slope.is_ok_and(|slope| slope == graph.zero())
 }
 
 /// A factor that is below its floor where the run begins.

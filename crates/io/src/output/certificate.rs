@@ -120,6 +120,9 @@ impl Names<'_> {
             Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
             Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
             Proof::SmallFactor(agent) => json!({ "kind": "factor", "agent": self.of(*agent) }),
+            Proof::Unmoved(agent, equation) => {
+                json!({ "kind": "unmoved", "agent": self.of(*agent), "equation": equation + 1 })
+            }
             Proof::NullVector(agent, vector) => {
                 json!({ "kind": "null-vector", "agent": self.of(*agent), "vector": numbers(vector) })
             }

@@ -123,6 +123,13 @@ pub enum KindEvidence {
         /// Its floor.
         floor: f64,
     },
+    /// An equation of a chain is not moved by its next state.
+    Unmoved {
+        /// Whose.
+        agent: Named,
+        /// Which, from zero.
+        equation: usize,
+    },
     /// The factor of the input is a constant matrix without an inverse.
     FactorSingular {
         /// Whose.
@@ -303,6 +310,7 @@ impl KindEvidence {
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::FactorAtStart { .. }
             | KindEvidence::FactorSingular { .. }
+            | KindEvidence::Unmoved { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
         }
     }
@@ -328,6 +336,7 @@ impl KindEvidence {
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::FactorAtStart { .. }
             | KindEvidence::FactorSingular { .. }
+            | KindEvidence::Unmoved { .. }
             | KindEvidence::LengthsOutsideRegressor(_)
             | KindEvidence::LengthsKnown
             | KindEvidence::LengthsInRegressor(_)

@@ -48,6 +48,12 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::FactorAtStart { agent, value, floor } => {
             format!("that of {} starts at {}, where the run ends: its floor is {floor}", agent.name, rounded(*value))
         }
+        KindEvidence::Unmoved { agent, equation } => format!(
+            "x{} does not move equation {} of {}: its slope is 0 for ever",
+            equation + 2,
+            equation + 1,
+            agent.name
+        ),
         KindEvidence::FactorSingular { agent } => format!("that of {} is a matrix without an inverse", agent.name),
         KindEvidence::FactorFloor { agent, floor, everywhere, matrix } => {
             let known = match everywhere {

@@ -71,6 +71,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
         KindEvidence::FactorAtStart { agent, .. } => format!("a start of {} at which ψ is larger", agent.name),
+        KindEvidence::Unmoved { agent, equation } => {
+            format!("a term of x{} in equation {} of {}, such as x{0} itself", equation + 2, equation + 1, agent.name)
+        }
         KindEvidence::FactorSingular { agent } => {
             format!("rows of ψ for {} of which none follows from the others", agent.name)
         }
