@@ -19,7 +19,8 @@
 //! zero. When everybody has come to rest at c, Q = c Σᵢ uᵢ [1 + dᵢ α₁/α₀ + Σⱼ w_ij (T_ij − 1/κ₀)].
 //!
 //! A chain of order k has α_{k−1} and s = x_{k−1} − z in the place of α₁ and s. A vehicle has x̃ = x − d in the place of q, and under (46), where
-//! it is itself the chain, Bᵢ = Xᵢ.
+//! it is itself the chain, Bᵢ = Xᵢ. There a force f moves Q by Σᵢ uᵢ (α₁ + dᵢ)/α₀ ∫ f/m dt: the law takes ρ = ẍ − f/m for the acceleration, so
+//! that with ρ in Xᵢ and Wᵢ Ḃᵢ gains α₁ f/m and Ẇᵢ gains f/m.
 //!
 //! (3) and (23) have q̈ in the place of ż: with Bᵢ = żᵢ + α₁ q̇ᵢ + α₀ qᵢ and Wᵢ = q̇ᵢ + α₁ qᵢ the same Q is conserved.
 //!
@@ -31,13 +32,13 @@
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
-use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup, ThrustKind, ThrustLaw, VehicleModel};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup, ThrustLaw, VehicleModel};
 use thiserror::Error;
 
 use crate::conserved::Conserved;
 use crate::fixed::{NotFixed, fixed};
 use crate::instance::designed;
-use crate::kinds::is_lagrangian;
+use crate::kinds::{is_its_own_reference, is_lagrangian};
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
 use crate::prediction::{NoIdeal, family_start};
 use crate::surroundings::dry_loss_w;
@@ -118,8 +119,8 @@ pub enum NoPrediction {
         /// Index of the agent.
         agent: usize,
     },
-    /// Nothing keeps apart what pushes it and what it agrees on.
-    #[error("agent number {} has no reference beside itself, so that pushes move what is agreed on", agent + 1)]
+    /// Nothing keeps apart what pushes it and what it agrees on, and the impulse is not known.
+    #[error("agent number {} has no reference beside itself, so that what is agreed on moves by an impulse that only the run knows", agent + 1)]
     Pushed {
         /// Index of the agent.
         agent: usize,
@@ -197,16 +198,10 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
     }
-    let with = |design: fn(&ThrustKind) -> bool| {
-        move |own: &AgentSetup| own.law.downcast().is_some_and(|law: &ThrustLaw| design(&law.design))
-    };
-    let adapts = with(|design| design.estimate_start().is_some());
+    let adapts =
+        |own: &AgentSetup| own.law.downcast().is_some_and(|law: &ThrustLaw| law.design.estimate_start().is_some());
     if let Some(agent) = setup.agents.iter().position(adapts) {
         return Err(NoPrediction::ErrorStays { agent });
-    }
-    let is_its_own = with(|design| *design == ThrustKind::Continuous);
-    if let Some(agent) = setup.agents.iter().position(|own| is_its_own(own) && !own.pushes.is_empty()) {
-        return Err(NoPrediction::Pushed { agent });
     }
     let (edges, _) = fixed(&setup.network)?;
     let n = setup.agents.len();
@@ -248,9 +243,9 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
 
 /// Whether its tracking error drops out of Q.
 fn conserves(agent: &AgentSetup) -> bool {
-    if let Some(ThrustLaw { design, .. }) = agent.law.downcast() {
+    if agent.law.is::<ThrustLaw>() {
         // The angular velocity of a rotorcraft is late, and (46) has nothing else that would be on time.
-        return *design != ThrustKind::Continuous || agent.robot.kind.is::<VehicleModel>();
+        return !is_its_own_reference(agent) || agent.robot.kind.is::<VehicleModel>();
     }
     let of_derivatives =
         |model: &ChainModel| model.order() > 1 && matches!(model, ChainModel::Derivatives(_) | ChainModel::Vector(_));

@@ -7,7 +7,8 @@ use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{Exchange, Setup};
 
 use crate::agreement::NoPrediction;
-use crate::manipulation::error_integral;
+use crate::kinds::is_its_own_reference;
+use crate::manipulation::{error_integral, impulses};
 use crate::null_vector::{Positive, sum_depth};
 
 /// Of the size of what is averaged: a value that is less certain than this is none.
@@ -143,9 +144,15 @@ impl Conserved<'_> {
         ((b + w * degree) * per_alpha + past, rest)
     }
 
-    /// What Remark 4 adds to agent i's term of Q in the course of time.
+    /// What Remark 4, and pushes under (46), add to agent i's term of Q in the course of time.
     fn shift(&self, i: usize, axis: usize) -> Result<Tally, NoPrediction> {
         let agent = &self.setup.agents[i];
+        if is_its_own_reference(agent) && !agent.pushes.is_empty() {
+            let degree: f64 = self.heard[i].iter().filter_map(|edge| edge.weight.constant()).sum();
+            let by_mass = (self.alpha[i][1] + degree) / self.alpha[i][0] / agent.robot.theta[0];
+            let shift = impulses(agent, axis).map(|impulse| Tally::of(by_mass * impulse));
+            return shift.ok_or(NoPrediction::Pushed { agent: i });
+        }
         if agent.manipulability == 0.0 {
             return Ok(Tally::default());
         }

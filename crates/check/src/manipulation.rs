@@ -35,8 +35,12 @@ pub(crate) fn error_integral(agent: &AgentSetup, axis: usize) -> Option<f64> {
         Gain::Bandwidth(omega) => omega * mass,
         Gain::Matrix(_) => return None,
     };
-    let impulses: Option<f64> = agent.pushes.iter().map(|push| impulse(push, axis)).sum();
-    Some((impulses? + mass * s_0) / k)
+    Some((impulses(agent, axis)? + mass * s_0) / k)
+}
+
+/// ∫ τ_ext dt of all pushes on one axis, if it is known before the run.
+pub(crate) fn impulses(agent: &AgentSetup, axis: usize) -> Option<f64> {
+    agent.pushes.iter().map(|push| impulse(push, axis)).sum()
 }
 
 /// Whether z(0) = q̇(0) on all axes.

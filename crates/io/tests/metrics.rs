@@ -53,6 +53,20 @@ fn metrics_are_what_one_computes_by_hand() {
 }
 
 #[test]
+fn agents_in_formation_agree_on_where_they_are_less_their_offsets() {
+    let (setup, mut recording) = by_hand();
+    for (agent, values) in [(0, [0.5, 0.5, -0.5, -1.0]), (1, [0.0, 0.0, 0.0, -0.75])] {
+        recording.columns.push(Column { agent, signal: Signal::Offset, axis: 0, values: values.to_vec() });
+    }
+    let metrics = Metrics::of(&setup, &recording, Some(&[1.5]), None);
+    // Both end at 2.
+    assert_eq!(metrics.disagreement.last(), Some(0.0));
+    assert_eq!(metrics.final_means, Some(vec![2.0]));
+    let [agreement] = metrics.agreement.unwrap()[..] else { panic!("one axis") };
+    assert_eq!([agreement.predicted, agreement.reached, agreement.distance], [1.5, 2.0, 0.5]);
+}
+
+#[test]
 fn a_torque_clipped_at_an_enforced_limit_counts_as_reached() {
     let (mut setup, mut recording) = by_hand();
     setup.agents[0].enforce_limits = true;

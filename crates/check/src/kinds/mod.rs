@@ -23,7 +23,7 @@ pub(crate) use point_mass::PositionOnlyMass;
 pub(crate) use rotorcraft::Rotorcraft;
 pub(crate) use spacecraft::Spacecraft;
 pub(crate) use task_space::TaskSpaceRobot;
-pub(crate) use vehicle::Vehicle;
+pub(crate) use vehicle::{Vehicle, is_its_own_reference};
 
 use crate::hypothesis::Hypothesis;
 use crate::theorem::Theorem;

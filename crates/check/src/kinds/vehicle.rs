@@ -42,6 +42,11 @@ pub(super) fn law(agent: &AgentSetup) -> Option<&ThrustLaw> {
     agent.law.downcast()
 }
 
+/// Whether nothing leads it but itself: (46), where its own acceleration stands in the place of a reference.
+pub(crate) fn is_its_own_reference(agent: &AgentSetup) -> bool {
+    law(agent).is_some_and(|law| law.design == ThrustKind::Continuous)
+}
+
 /// Where a design comes from.
 pub(super) fn treated(agent: &AgentSetup) -> &'static str {
     match law(agent).map(|law| law.design) {

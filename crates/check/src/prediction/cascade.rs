@@ -16,11 +16,11 @@
 use std::collections::VecDeque;
 
 use forwardstep_sim::reference::{Consensus, PureIntegral};
-use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustKind, ThrustLaw};
+use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustLaw};
 use thiserror::Error;
 
 use crate::instance::designed;
-use crate::kinds::is_lagrangian;
+use crate::kinds::{is_its_own_reference, is_lagrangian};
 
 /// The interval of all cascaded variables and of all messages on their way, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,8 +155,8 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
 
 /// Whether its positions, velocities and references are recorded, and agree as they stand.
 fn has_columns(agent: &AgentSetup) -> bool {
-    let leads = |law: &ThrustLaw| law.design != ThrustKind::Continuous && agent.target.is_none();
-    is_lagrangian(agent) || agent.law.downcast().is_some_and(leads)
+    let is_led = agent.law.is::<ThrustLaw>() && !is_its_own_reference(agent) && agent.target.is_none();
+    is_lagrangian(agent) || is_led
 }
 
 /// The columns of x₀ … x_ℓ: q, q̇, ż, z̈, ….

@@ -19,13 +19,13 @@ use forwardstep_core::robot::PointMass;
 use forwardstep_sim::reference::{Consensus, PureIntegral};
 use forwardstep_sim::{
     AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, Solver, Start,
-    ThrustKind, ThrustLaw, VehicleModel,
+    ThrustLaw, VehicleModel,
 };
 use thiserror::Error;
 
 use crate::conserved::Tally;
 use crate::instance::designed;
-use crate::kinds::is_lagrangian;
+use crate::kinds::{is_its_own_reference, is_lagrangian};
 
 /// Why there is no setup in which everybody follows its reference exactly.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -169,7 +169,7 @@ fn in_formation(own: &AgentSetup, law: &ThrustLaw) -> Option<Vec<Vec<Tally>>> {
     let start = &own.start;
     let mut measured: Vec<Vec<Tally>> =
         [&start.q, &start.dq].map(|x| x.iter().copied().map(Tally::of).collect()).into();
-    if law.design == ThrustKind::Continuous {
+    if is_its_own_reference(own) {
         let kind = &own.robot.kind;
         let of_vehicle = kind.downcast().map(|VehicleModel { gravity }| *gravity);
         let gravity = of_vehicle.or_else(|| Some(kind.downcast::<RotorcraftModel>()?.gravity))?;
@@ -194,9 +194,8 @@ pub(crate) fn order(own: &AgentSetup) -> Option<usize> {
     if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
         return Some(2);
     }
-    if let Some(ThrustLaw { design, .. }) = own.law.downcast() {
-        // Under (46) nothing leads the vehicle: its own acceleration stands in the place of a reference.
-        return Some(if *design == ThrustKind::Continuous { 3 } else { 2 });
+    if own.law.is::<ThrustLaw>() {
+        return Some(if is_its_own_reference(own) { 3 } else { 2 });
     }
     own.law.downcast::<ChainLaw>()?;
     match own.robot.kind.downcast()? {

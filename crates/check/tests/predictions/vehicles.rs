@@ -129,10 +129,10 @@ fn thm4_thm5_the_value_that_vehicles_agree_on_is_known_before_they_fly() {
             let mut agents = to_be(design, in_formation);
             if has_reference(design) {
                 agents[0].start.reference = vec![vec![0.2, -0.1, 0.3], vec![0.1, 0.0, -0.2]];
-                // A push for a while moves nobody for good.
-                let course = Course::Each([0.6, -0.4, 0.2].map(Function::Constant).into());
-                agents[1].pushes = vec![Push { effect: Effect::Torque(course), from_s: 1.0, until_s: 2.5 }];
             }
+            // A push for a while moves nobody for good, but under (46), where it moves all by its impulse.
+            let course = Course::Each([0.6, -0.4, 0.2].map(Function::Constant).into());
+            agents[1].pushes = vec![Push { effect: Effect::Torque(course), from_s: 1.0, until_s: 2.5 }];
             let setup = fixed(agents, 90.0);
             let prediction = predict(&setup).unwrap();
             assert_eq!(prediction.influence[3], 0.0);
@@ -141,9 +141,16 @@ fn thm4_thm5_the_value_that_vehicles_agree_on_is_known_before_they_fly() {
                 let x = *agreed(&setup, &outcome, agent, axis).last().unwrap();
                 let c = prediction.value[axis];
                 assert!((x - c).abs() < 2e-6, "{design:?} {in_formation} agent {agent}: {x} is not {c}");
-                assert!((course.value[axis] - c).abs() < 2e-6, "{design:?}: {} is not {c}", course.value[axis]);
+                let unpushed = {
+                    let mut setup = setup.clone();
+                    setup.agents[1].pushes.clear();
+                    predict(&setup).unwrap().value[axis]
+                };
+                assert_eq!(has_reference(design), unpushed == c, "{unpushed} {c}");
+                let alone = course.value[axis];
+                assert!((alone - unpushed).abs() < 2e-6, "{design:?}: {alone} is not {unpushed}");
                 let [low, high] = course.within.as_ref().unwrap()[axis];
-                assert!(low - 1e-6 <= c && c <= high + 1e-6, "{design:?}: {c} is not in {low} … {high}");
+                assert!(low - 1e-6 <= alone && alone <= high + 1e-6, "{design:?}: {alone} is not in {low} … {high}");
             }
         }
     }
@@ -185,7 +192,8 @@ fn why_nothing_is_known_of_vehicles_is_said() {
         assert_eq!(said(design, |_| ()), Some(NoPrediction::ErrorStays { agent: 0 }));
     }
     fn push(setup: &mut Setup, until_s: f64) {
-        let course = Course::Each(vec![Function::Constant(0.6); 3]);
+        let gust = || Function::Formula((Expression::variable(0) * 3.0).sin_of());
+        let course = Course::Each(vec![gust(), gust(), gust()]);
         setup.agents[2].pushes = vec![Push { effect: Effect::Torque(course), from_s: 0.1, until_s }];
     }
     let for_a_while = |setup: &mut Setup| push(setup, 0.2);

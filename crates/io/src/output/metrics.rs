@@ -30,7 +30,7 @@ pub struct Metrics {
     /// When the disagreement exceeds 1 % of its start for the last time, s; absent where it still does at the last row.
     #[serde(default)]
     pub settled_to_1_percent_s: Option<f64>,
-    /// The mean of the positions at the last row, one entry per axis; absent where agents cannot be compared.
+    /// The mean of the positions less their offsets at the last row, one entry per axis; absent where agents cannot be compared.
     #[serde(default)]
     pub final_means: Option<Vec<f64>>,
     /// The largest |s| at the last row, over all agents and axes; absent where s is not recorded.
@@ -198,11 +198,11 @@ pub struct Agreement {
     #[serde(deserialize_with = "number::or_nan")]
     #[schemars(with = "Option<f64>")]
     pub predicted: f64,
-    /// The mean of their last positions.
+    /// The mean of their last positions, less their offsets.
     #[serde(deserialize_with = "number::or_nan")]
     #[schemars(with = "Option<f64>")]
     pub reached: f64,
-    /// The largest distance of a last position from the prediction.
+    /// The largest distance of a last position, less its offset, from the prediction.
     #[serde(deserialize_with = "number::or_nan")]
     #[schemars(with = "Option<f64>")]
     pub distance: f64,
@@ -371,10 +371,12 @@ pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
 }
 
-/// The positions of all agents on an axis at the last row, and their mean.
+/// What all agents are to agree on on an axis, their positions less their offsets, at the last row, and the mean of it.
 fn last_positions(table: &Table<'_>, axis: usize) -> Option<(Vec<f64>, f64)> {
-    let last: Option<Vec<f64>> =
-        (0..table.agents()).map(|agent| table.column(agent, Signal::Position, axis)?.last().copied()).collect();
+    let last_of = |agent: usize, signal: Signal| table.column(agent, signal, axis)?.last().copied();
+    let last: Option<Vec<f64>> = (0..table.agents())
+        .map(|agent| Some(last_of(agent, Signal::Position)? - last_of(agent, Signal::Offset).unwrap_or(0.0)))
+        .collect();
     let last = last.filter(|last| !last.is_empty())?;
     let mean = last.iter().sum::<f64>() / last.len() as f64;
     Some((last, mean))

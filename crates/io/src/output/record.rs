@@ -51,6 +51,12 @@ impl RunRecord<'_> {
     pub fn digest(&self) -> String {
         blake3::hash(self.scenario_text.as_bytes()).to_hex().to_string()
     }
+
+    /// Where all positions will be, per axis, if that is predicted; nothing where they are to differ by offsets.
+    pub fn predicted_position(&self) -> Option<&[f64]> {
+        let keeps_offset = self.setup.agents.iter().any(|agent| agent.target.is_some());
+        self.predicted_agreement.as_deref().filter(|_| !keeps_offset)
+    }
 }
 
 impl Goal {

@@ -45,7 +45,7 @@ impl<'a> Plots<'a> {
     /// q, one panel per joint.
     pub(crate) fn positions(&self) -> Result<String, EncodeError> {
         let predicted = |axis: usize| {
-            let value = self.record.predicted_agreement.as_ref()?.get(axis)?;
+            let value = self.record.predicted_position()?.get(axis)?;
             Some((*value, "predicted agreement".to_owned()))
         };
         self.per_joint("Positions", "q", Signal::Position, predicted)

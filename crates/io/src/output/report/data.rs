@@ -272,7 +272,7 @@ impl Payload {
             families,
             disagreement,
             goal: record.goal.and_then(|outcome| outcome.goal.bound()),
-            predicted: record.predicted_agreement.clone(),
+            predicted: record.predicted_position().map(<[f64]>::to_vec),
             break_points: if break_points.len() <= MOST_LINES { break_points } else { Vec::new() },
             gantt: Gantt::of(record.setup, timeline, &mut notes),
             delays,
