@@ -23,6 +23,7 @@ fn nothing_is_refuted_in_a_minute() {
     assert!(count(&said, "whose spread never grew") > 10, "{said}");
     assert!(count(&said, "whose spread shrank at least by what is guaranteed") > 5, "{said}");
     assert!(count(&said, "whose error falls") > 10, "{said}");
+    assert!(count(&said, "that came to the value that is predicted") > 0, "{said}");
     assert!(!folder.path().join("forwardstep-refuted").exists());
 }
 

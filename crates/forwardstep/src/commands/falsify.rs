@@ -52,6 +52,7 @@ fn summary(tally: &Tally, seed: u64, console: &mut Console) {
         (tally.kept + tally.shrank, "without tracking errors, whose spread never grew"),
         (tally.shrank, "of these, whose spread shrank at least by what is guaranteed"),
         (tally.fell, "closed loops whose balance holds and whose error falls"),
+        (tally.reached, "of these, that came to the value that is predicted for certain"),
         (tally.balanced, "closed loops whose balance holds, of which nothing more is promised"),
         (tally.undecided.len() as u64, "undecided: the error had not fallen over 16 times the horizon"),
     ];

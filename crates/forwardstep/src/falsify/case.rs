@@ -146,7 +146,10 @@ impl Case {
         let each = |rng: &mut ChaCha8Rng| if own_roots { roots(rng, order) } else { common.clone() };
         let leads = usize::from(matches!(course, Course::Follow { .. }));
         let fixed = leads > 0 || matches!(course, Course::Integral { .. });
-        let count = if fixed { 1 } else { rng.random_range(1..=3) };
+        // Of a network that never changes the value agreed upon is known beforehand.
+        let still = !alone && rng.random_bool(0.2);
+        let (delays, weights) = if still { (&DELAYS[..3], &WEIGHTS[..5]) } else { (&DELAYS[..], &WEIGHTS[..]) };
+        let count = if fixed || still { 1 } else { rng.random_range(1..=3) };
         let density = rng.random_range(0.2..0.7);
         Case {
             number,
@@ -159,8 +162,8 @@ impl Case {
             known: rng.random_bool(0.3),
             phases: (0..count).map(|_| phase(rng, agents + leads, leads > 0, density)).collect(),
             switching: [Switching::Repeat, Switching::Once, Switching::Random][rng.random_range(0..3)],
-            weight: if leads > 0 { "1" } else { pick(rng, &WEIGHTS) }.into(),
-            delay: if leads > 0 { DELAYS[0] } else { pick(rng, &DELAYS) }.into(),
+            weight: if leads > 0 { "1" } else { pick(rng, weights) }.into(),
+            delay: if leads > 0 { DELAYS[0] } else { pick(rng, delays) }.into(),
             end_s: 30.0,
         }
     }

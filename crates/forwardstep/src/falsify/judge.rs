@@ -2,15 +2,15 @@
 //!
 //! Where no tracking error is left, s ≡ 0, the interval of the cascaded variables and of what is on its way never grows, whatever the
 //! graphs and delays do, and shrinks by what is guaranteed: that can be refuted in finite time. Of whole closed loops the balance of V has to hold, a run whose hypotheses
-//! all hold must not break down, and its error must fall over doubled horizons. That a limit exists no run refutes: what has not fallen
-//! after the last doubling is undecided.
+//! all hold must not break down, its error must fall over doubled horizons, and where the value agreed upon is known beforehand it must be
+//! that one. That a limit exists no run refutes: what has not fallen after the last doubling is undecided.
 
 use std::ops::ControlFlow;
 
 use forwardstep::check::hypothesis::FollowingEvidence;
 use forwardstep::check::prediction::guaranteed::WORK;
 use forwardstep::check::prediction::{CascadeSpread, Fall, guaranteed_rate};
-use forwardstep::check::{Answer, Evidence, Report, check, ideal};
+use forwardstep::check::{Answer, Evidence, Report, check, ideal, predict};
 use forwardstep::io::diagnostic::SourceText;
 use forwardstep::io::output::{BalanceResidual, Disagreement, Metrics, ending_sentence};
 use forwardstep::io::scenario::{Inputs, Scenario, read_scenario};
@@ -29,6 +29,11 @@ const SMALL: f64 = 1e-5;
 /// How far V + ∫ dissipation may be off, as a part of V(0): by a tenth of it where tolerances are tight.
 const BALANCE: f64 = 1e-4;
 const TIGHT: Method = Method::Adaptive { rtol: 1e-11, atol: 1e-13 };
+/// Parts of the first disagreement: what is left of one that is over, and how far from the value that was predicted it may then be, beside some
+/// times what is left. Tracking errors fall without a rate, and the last of them still moves all.
+const OVER: f64 = 1e-3;
+const NEAR: f64 = 1e-2;
+const TIMES_LEFT: f64 = 20.0;
 /// How far the interval may grow by tolerance, as a part of what it was.
 const GROWTH: f64 = 1e-6;
 
@@ -41,6 +46,8 @@ pub(crate) enum Verdict {
     Shrank,
     /// The balance holds and the error falls.
     Fell,
+    /// It falls, and all come to where it was predicted.
+    Reached,
     /// The balance holds; `check` promises nothing more.
     Balanced,
     /// The error had not fallen after the last doubling.
@@ -64,6 +71,8 @@ pub(crate) enum Failure {
     BrokeDown(String),
     /// The error over the longest horizon is above all before though all hypotheses hold.
     Rose { most: f64, last: f64 },
+    /// All agree, so far from the value that was predicted.
+    Elsewhere { away: f64, disagreement: f64 },
 }
 
 impl std::fmt::Display for Failure {
@@ -90,6 +99,9 @@ impl std::fmt::Display for Failure {
                     f,
                     "all hypotheses hold, and the error over 16 times the horizon is {last:.3e}, above {most:.3e} over shorter ones"
                 )
+            }
+            Failure::Elsewhere { away, disagreement } => {
+                write!(f, "they agree to {disagreement:.3e}, {away:.3e} from the value that is predicted for certain")
             }
         }
     }
@@ -202,6 +214,7 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
     let (never_ends, small) = (promised(&report, &[]), SMALL.max(4.0 * left(&report)));
     // What a run watches was so in one that did not end by it.
     let promised = promised(&report, &[Answer::Watched]);
+    let value = predict(setup).ok().filter(|_| promised).map(|prediction| prediction.value);
     let mut errors = Vec::new();
     for doublings in 0..=DOUBLINGS {
         // What is drawn or bounded is made for a horizon.
@@ -219,7 +232,7 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
                 false => Verdict::Silent("it broke down, and nothing is promised".into()),
             };
         }
-        let metrics = Metrics::of(&setup, &outcome.recording, None, None);
+        let metrics = Metrics::of(&setup, &outcome.recording, value.as_deref(), None);
         if metrics.balance_residual.is_some_and(|residual| is_off(residual.relative, BALANCE)) {
             // What tolerances leave falls with them.
             setup.solver.method = TIGHT;
@@ -233,11 +246,46 @@ fn whole(case: &Case, setup: &Setup) -> Verdict {
         }
         let Some(late) = late(&setup, outcome).filter(|_| promised) else { return Verdict::Balanced };
         errors.push(late);
-        if let Some(verdict) = decided(&errors, small) {
-            return verdict;
+        match (decided(&errors, small), Whither::of(&metrics, late)) {
+            // What is left may still be on its way there.
+            (Some(Verdict::Fell), Some(Whither::Unclear | Whither::Elsewhere { .. })) if doublings < DOUBLINGS => {}
+            (Some(Verdict::Fell), Some(Whither::There)) => return Verdict::Reached,
+            (Some(Verdict::Fell), Some(Whither::Elsewhere { away })) => {
+                return Verdict::Failed(Failure::Elsewhere { away, disagreement: late });
+            }
+            (Some(verdict), _) => return verdict,
+            (None, _) => {}
         }
     }
     Verdict::Undecided
+}
+
+/// Where agents come to that are to agree on a value known beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Whither {
+    There,
+    Elsewhere {
+        away: f64,
+    },
+    /// Too much of the disagreement is left.
+    Unclear,
+}
+
+impl Whither {
+    /// Nothing where no value was predicted.
+    fn of(metrics: &Metrics, late: f64) -> Option<Whither> {
+        let away = metrics.agreement.as_ref()?.iter().map(|axis| axis.distance).fold(0.0, f64::max);
+        let Disagreement::Measured { initial, .. } = metrics.disagreement else { return None };
+        Some(Whither::judged(away, initial, late))
+    }
+
+    pub(super) fn judged(away: f64, initial: f64, late: f64) -> Whither {
+        match away {
+            away if away <= (NEAR * initial).max(SMALL) + TIMES_LEFT * late => Whither::There,
+            away if late <= (OVER * initial).max(SMALL) => Whither::Elsewhere { away },
+            _ => Whither::Unclear,
+        }
+    }
 }
 
 /// What the errors late in runs over doubled horizons decide, if anything. They are held against the largest before: an error that falls without

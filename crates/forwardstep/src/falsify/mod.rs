@@ -22,6 +22,8 @@ pub(crate) struct Tally {
     pub(crate) shrank: u64,
     /// Closed loops whose balance holds and whose error falls.
     pub(crate) fell: u64,
+    /// Those of them that came to where it was predicted for certain.
+    pub(crate) reached: u64,
     /// Closed loops whose balance holds, of which nothing more is promised.
     pub(crate) balanced: u64,
     /// Those whose error had not fallen.
@@ -39,6 +41,7 @@ impl Tally {
             Verdict::Kept => self.kept += 1,
             Verdict::Shrank => self.shrank += 1,
             Verdict::Fell => self.fell += 1,
+            Verdict::Reached => (self.fell, self.reached) = (self.fell + 1, self.reached + 1),
             Verdict::Balanced => self.balanced += 1,
             Verdict::Undecided => self.undecided.push(case),
             Verdict::Silent(reason) => *self.silent.entry(without_numbers(&reason)).or_default() += 1,
@@ -62,6 +65,7 @@ fn shrunk(mut case: Case, mut failure: Failure) -> (Case, Failure) {
             | Verdict::Kept
             | Verdict::Shrank
             | Verdict::Fell
+            | Verdict::Reached
             | Verdict::Balanced
             | Verdict::Undecided
             | Verdict::Silent(_) => None,
@@ -91,7 +95,7 @@ mod tests {
     use super::case::{Course, Phase, Switching, System, Thrust};
     use forwardstep::check::prediction::{CascadeSpread, Fall};
 
-    use super::judge::{decided, grown, judge, left_more, read};
+    use super::judge::{Whither, decided, grown, judge, left_more, read};
     use super::*;
 
     #[test]
@@ -141,6 +145,18 @@ mod tests {
         assert!(left(&[(1, 2)]), "both of it");
         assert!(left(&[(1, 0), (1, 2)]) && left(&[(0, 1), (1, 0)]), "one of it, and one that leads one way");
         assert!(!left(&[(0, 1)]), "nothing leads back along the last");
+    }
+
+    #[test]
+    fn a_value_is_missed_only_where_hardly_any_disagreement_is_left() {
+        assert_eq!(Whither::judged(0.005, 1.0, 1e-6), Whither::There);
+        assert_eq!(Whither::judged(0.03, 1.0, 1e-6), Whither::Elsewhere { away: 0.03 });
+        assert_eq!(Whither::judged(0.03, 1.0, 2e-3), Whither::There, "some times what is left");
+        assert_eq!(Whither::judged(0.9, 1.0, 2e-3), Whither::Unclear);
+        assert_eq!(Whither::judged(f64::NAN, 1.0, 2e-3), Whither::Unclear);
+        // Who starts together has no size of a disagreement.
+        assert_eq!(Whither::judged(5e-6, 0.0, 0.0), Whither::There);
+        assert_eq!(Whither::judged(1.0, 0.0, 0.0), Whither::Elsewhere { away: 1.0 });
     }
 
     /// κ₀ that differ under (a5) with a delay that jumps: the network may diverge, and `check` does not say otherwise.
