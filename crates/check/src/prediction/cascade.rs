@@ -11,7 +11,7 @@
 //! which is (a6) and (30) divided by its constants. Every variable moves towards others of its own time or of a window as long as the longest
 //! delay, so none leaves the interval that all of them, and what is on its way, lie in: the interval never grows, whatever the graph and the delays
 //! do, and the value agreed upon, if there is one, is inside. For velocities this needs κ₀ⱼ ≤ κ₀ᵢ where i hears j, which
-//! within a strongly connected component is the common κ₀ of Theorem 2.
+//! within a strongly connected component is the common κ₀ of Theorem 2. Of vehicles in formation x₀ and x₁ are x − d and ẋ − ḋ.
 
 use std::collections::VecDeque;
 
@@ -88,10 +88,15 @@ impl CascadeSpread {
             let mut sent = own.clone();
             for (agent, setup_of) in setup.agents.iter().enumerate() {
                 let columns = derivatives(recording, agent, axis, setup_of.roots_per_s.len())?;
+                let offset = setup_of.target.as_ref().and_then(|target| target.paths().get(axis));
                 let mut x = vec![0.0; columns.len()];
                 for row in 0..rows {
                     for (x, column) in x.iter_mut().zip(&columns) {
                         *x = column[row];
+                    }
+                    if let Some(offset) = offset {
+                        // What follows are derivatives of the reference, which are of x − d already.
+                        x.iter_mut().take(2).zip(offset.jet(recording.t_s[row])).for_each(|(x, d)| *x -= d);
                     }
                     let psi = cascade(&setup_of.roots_per_s.real, &mut x);
                     widen(&mut own, row, psi);
@@ -153,10 +158,9 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     }
 }
 
-/// Whether its positions, velocities and references are recorded, and agree as they stand.
+/// Whether its positions, velocities and references are recorded.
 fn has_columns(agent: &AgentSetup) -> bool {
-    let is_led = agent.law.is::<ThrustLaw>() && !is_its_own_reference(agent) && agent.target.is_none();
-    is_lagrangian(agent) || is_led
+    is_lagrangian(agent) || agent.law.is::<ThrustLaw>() && !is_its_own_reference(agent)
 }
 
 /// The columns of x₀ … x_ℓ: q, q̇, ż, z̈, ….

@@ -161,7 +161,7 @@ const cards = {
     },
   },
   cascade: {
-    picks: [{ id: "interval", options: [["", "length"], ...joints.map((j) => [String(j.axis), j.name])] }],
+    picks: [{ id: "interval", options: [["", "length"], ...joints.filter((j) => index.cascade?.low[j.axis] != null).map((j) => [String(j.axis), j.name])] }],
     build: ([axis]) => {
       const c = index.cascade;
       if (!c) return { series: [] };

@@ -43,6 +43,11 @@ pub fn axis_words(setup: &Setup, agent: usize, axis: usize) -> String {
     in_words(&axis_name(setup, agent, axis))
 }
 
+/// What is agreed upon.
+pub(crate) fn value_words(setup: &Setup) -> &'static str {
+    if setup.agents.iter().any(|agent| agent.target.is_some()) { "Value less offsets" } else { "Value" }
+}
+
 /// The name of the axis of a torque in running text; that of a rotorcraft turns its body.
 pub fn torque_words(setup: &Setup, agent: usize, axis: usize) -> String {
     if turns(setup, agent) {

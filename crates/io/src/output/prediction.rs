@@ -282,7 +282,8 @@ impl CourseFound {
         let leaves_some = |law: &ThrustLaw| law.design.estimate_start().is_some();
         let moved = setup.agents.iter().any(|agent| agent.law.downcast().is_some_and(leaves_some));
         let moved = if moved { "; an s that stays, as adapted masses leave one, moves it" } else { "" };
-        Some(format!("value agreed upon ({}{more}), to ± {}{moved}", middles.join(", "), number_words(widest)))
+        let what = names::value_words(setup).to_lowercase();
+        Some(format!("{what} agreed upon ({}{more}), to ± {}{moved}", middles.join(", "), number_words(widest)))
     }
 
     fn torque_sentence(&self, setup: &Setup) -> Option<String> {

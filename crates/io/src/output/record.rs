@@ -54,8 +54,12 @@ impl RunRecord<'_> {
 
     /// Where all positions will be, per axis, if that is predicted; nothing where they are to differ by offsets.
     pub fn predicted_position(&self) -> Option<&[f64]> {
-        let keeps_offset = self.setup.agents.iter().any(|agent| agent.target.is_some());
-        self.predicted_agreement.as_deref().filter(|_| !keeps_offset)
+        self.predicted_agreement.as_deref().filter(|_| !self.keeps_offsets())
+    }
+
+    /// Whether agents agree on where they are less offsets of their own.
+    pub(crate) fn keeps_offsets(&self) -> bool {
+        !self.setup.all_track() && self.setup.agents.iter().any(|agent| agent.target.is_some())
     }
 }
 

@@ -15,7 +15,7 @@ pub(super) struct CascadeIndex {
     width: usize,
     /// What there is at most, for certain and for s ≡ 0.
     guaranteed: Option<usize>,
-    /// Its ends, one for every axis.
+    /// Its ends, one for every axis; none where positions are to differ by offsets, which are not in it.
     low: Vec<usize>,
     high: Vec<usize>,
 }
@@ -29,13 +29,14 @@ impl CascadeIndex {
             Some(Guarantee::Found(found)) => widths.first().map(|first| add(&stairs(found, *first, t_s))),
             Some(Guarantee::NoneSince(_)) | None => None,
         };
+        let ends = if record.keeps_offsets() { (&[][..], &[][..]) } else { (&spread.low[..], &spread.high[..]) };
         CascadeIndex {
             // The largest over all axes, as of a disagreement.
             unit: names::gap_unit(record.setup),
             width: add(&widths),
             guaranteed,
-            low: spread.low.iter().map(|end| add(end)).collect(),
-            high: spread.high.iter().map(|end| add(end)).collect(),
+            low: ends.0.iter().map(|end| add(end)).collect(),
+            high: ends.1.iter().map(|end| add(end)).collect(),
         }
     }
 }

@@ -97,7 +97,7 @@ fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String
     let row = |(axis, [low, high]): (usize, &[f64; 2])| {
         let half = 0.5 * (high - low);
         (
-            format!("Value, {}", names::axis_words(setup, 0, axis)),
+            format!("{}, {}", names::value_words(setup), names::axis_words(setup, 0, axis)),
             format!("{} ± {}", number(low + half), number(half)),
             mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{agreed}", number(mean))),
         )
