@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, SpanningTree, Weight, spanning_tree as tree};
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::schedule::{Dwell, Extent, KnownSwitching, Window};
+use forwardstep_sim::schedule::{Dwell, Extent, KnownSwitching, Schedule, Window};
 
 use crate::hypothesis::{GraphEvidence, Hypothesis, Id, Named};
 use crate::links::varying_weights;
@@ -100,16 +100,32 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::DwellTime, evidence)
 }
 
-/// Whether one graph stays for ever, as the reference dynamics that contain accelerations need.
+/// Whether one graph stays for ever, as the reference dynamics that contain accelerations need. It may hear by other delays after a while.
 pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;
-    let evidence = match (schedule.constant_graph(), setup.following()) {
-        (Some(_), None) if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
-        (Some(_), _) => GraphEvidence::Stays,
-        (None, Some(Following { design, .. })) => GraphEvidence::SwitchesUnderLeader { design: *design },
-        (None, None) => GraphEvidence::Switches { graphs: schedule.graphs.len(), exchange: setup.exchange },
+    let stays = schedule.constant_graph().is_some();
+    let evidence = match setup.following() {
+        Some(_) if stays => GraphEvidence::Stays,
+        Some(Following { design, .. }) => GraphEvidence::SwitchesUnderLeader { design: *design },
+        // Delays may jump under (3) and (23), whenever that is.
+        None if !(stays || only_delays_change(schedule)) => {
+            GraphEvidence::Switches { graphs: schedule.graphs.len(), exchange: setup.exchange }
+        }
+        None if varying_weights(setup).next().is_some() => GraphEvidence::VaryingWeight,
+        None => GraphEvidence::Stays,
     };
     Hypothesis::new(Id::FixedGraph, evidence)
+}
+
+/// Whether all graphs have the same edges with the same weights.
+fn only_delays_change(schedule: &Schedule) -> bool {
+    let undelayed = |graph: &Vec<Edge>| {
+        let mut edges: Vec<Edge> = graph.iter().map(|edge| Edge { delay: 0, ..*edge }).collect();
+        edges.sort_by_key(|edge| (edge.to, edge.from));
+        edges
+    };
+    let mut all = schedule.graphs.iter().map(undelayed);
+    all.next().is_some_and(|first| all.all(|other| other == first))
 }
 
 /// The edges among agents, without those from the leader.

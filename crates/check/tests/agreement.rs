@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::prediction::CascadeSpread;
-use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
+use forwardstep_check::{Answer, Id, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth, Sinusoid};
@@ -137,6 +137,39 @@ fn eq_3_over_a_switching_graph_is_not_covered() {
     let report = check(&setup);
     assert_eq!(report.worst(), Answer::NotCovered);
     assert!(report.hypotheses.iter().any(|h| h.answer() == Answer::NotCovered && h.because().contains("(a1)")));
+}
+
+#[test]
+fn thm1_phases_that_differ_in_delays_alone_are_one_graph() {
+    let of = |delays: [usize; 5], weight: f64, dwell_s: f64| Phase {
+        edges: (0..5).map(|k| edge(k, (k + 1) % 5, if k == 2 { weight } else { 1.3 }, delays[k])).collect(),
+        dwell_s,
+    };
+    let turned = |mut phase: Phase| {
+        phase.edges.reverse();
+        phase
+    };
+    let saw = Delay::new(SawTooth { min_s: 0.0, max_s: 0.5, period_s: 0.37, offset_s: 0.1 });
+    let delays = || vec![Delay::constant(0.0), Delay::constant(0.4), saw.clone()];
+    for exchange in [Exchange::Position, Exchange::PositionVelocity] {
+        let over = |phases: Vec<Phase>| {
+            let mut setup = masses(exchange, 2, Schedule::periodic(phases), delays());
+            setup.reference = Arc::new(PureIntegral);
+            setup
+        };
+        let (first, second) = (of([0, 1, 2, 0, 1], 1.3, 0.6), turned(of([1, 1, 0, 2, 0], 1.3, 0.9)));
+        let mut setup = over(vec![first.clone(), second]);
+        assert_eq!(check(&setup).worst(), Answer::Holds, "{exchange:?}");
+        let heavier = check(&over(vec![first, of([1, 1, 0, 2, 0], 1.4, 0.9)]));
+        let fixed = heavier.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::FixedGraph).unwrap();
+        assert_eq!(fixed.answer(), Answer::NotCovered);
+        // And they agree, within an interval that never grows.
+        setup.time.end_s = 60.0;
+        let outcome = run(&setup);
+        let spread = spreads(&setup, &outcome, 0);
+        assert!(spread.windows(2).all(|pair| pair[1] <= pair[0] + 2e-5 * spread[0]), "{exchange:?}");
+        assert!(spread[spread.len() - 1] < 1e-2 * spread[0], "{exchange:?}: {}", spread[spread.len() - 1]);
+    }
 }
 
 #[test]

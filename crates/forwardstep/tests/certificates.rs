@@ -225,6 +225,31 @@ fn proofs_reach_networks_that_are_not_shipped() {
 }
 
 #[test]
+fn phases_that_differ_in_delays_alone_are_certified_as_one_graph() {
+    let phase = |delay: &str, weight: &str| {
+        format!(
+            "[[network.phases]]\ndwell_s = 1\nedges = [{{ from = \"m-1\", to = \"m-2\", weight = {weight}, delay.{delay} }}, \
+             [\"m-2\", \"m-1\"], [\"m-2\", \"m-3\"]]\n"
+        )
+    };
+    let integral = |second: &str| {
+        masses(&format!("{}{second}", phase("constant_s = 0.2", "2")))
+            .replace("[reference.consensus]\nroots_per_s", "[reference.pure_integral]\nroots_per_s")
+    };
+    let late = integral(&phase("sinusoid = { mean_s = 0.3, amplitude_s = 0.2, period_s = 0.7 }", "2"));
+    assert_eq!(judged(&late, "fixed-graph"), ("holds".to_owned(), "accepted".to_owned()));
+    // The same certificate beside another weight, or an edge less.
+    let folder = folder();
+    let file = folder.path().join("late.toml");
+    fs::write(&file, &late).unwrap();
+    let phases = [phase("constant_s = 0.2", "3"), phase("constant_s = 0.2", "2").replace(", [\"m-2\", \"m-3\"]", "")];
+    for second in phases {
+        let (outcome, words) = outcome_of_pair(&file, &integral(&second), "fixed-graph");
+        assert!(outcome == "rejected" && words.contains("the graphs differ"), "{outcome}: {words}");
+    }
+}
+
+#[test]
 fn swarms_with_roots_that_differ_are_certified_too() {
     let text = SHIPPED_SCENARIOS.iter().find(|shipped| shipped.name == "swarm-tracking").unwrap().text;
     for roots in ["[0.5, 3.0]", "[3.0, 0.5]", "[2.0, 0.1]"] {
