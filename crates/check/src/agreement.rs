@@ -113,7 +113,7 @@ pub enum NoPrediction {
     /// Its start does not fit, or it keeps an offset that its law does not know.
     #[error(transparent)]
     Start(#[from] NoIdeal),
-    /// (57) and (58) bring ṡ to zero; s ends at a constant that depends on the run.
+    /// (57) and (58) bring ṡ to zero; s ends at a constant that depends on the run, or, where an accelerometer has a bias, at none.
     #[error("adaptation brings ṡ of agent number {} to zero and not s, and what is left of s moves it", agent + 1)]
     ErrorStays {
         /// Index of the agent.
@@ -198,13 +198,9 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.control.is_some() {
         return Err(NoPrediction::Sampled);
     }
-    let adapts =
-        |own: &AgentSetup| own.law.downcast().is_some_and(|law: &ThrustLaw| law.design.estimate_start().is_some());
-    if let Some(agent) = setup.agents.iter().position(adapts) {
-        return Err(NoPrediction::ErrorStays { agent });
-    }
     let (edges, _) = fixed(&setup.network)?;
     let n = setup.agents.len();
+    let thrust = |agent: usize| setup.agents[agent].law.downcast().map(|law: &ThrustLaw| law.design);
     let NullVector { entries: influence, error: influence_error } =
         null_vector(n, edges).map_err(|reason| match reason {
             NoNullVector::Classes(closed_groups) => NoPrediction::NoSpanningTree { closed_groups },
@@ -214,6 +210,11 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     let counts = |agent: &usize| setup.reference.is::<Consensus>() && influence[*agent] > 0.0;
     if let Some(agent) = (0..n).filter(counts).find(|agent| pushed_for_ever(&setup.agents[*agent])) {
         return Err(NoPrediction::PushedForEver { agent });
+    }
+    let adapts = |agent: &usize| thrust(*agent).is_some_and(|design| design.estimate_start().is_some());
+    let drifts = |agent: &usize| thrust(*agent).is_some_and(|design| design.bias() != [0.0; 3]);
+    if let Some(agent) = (0..n).find(|agent| drifts(agent) || counts(agent) && adapts(agent)) {
+        return Err(NoPrediction::ErrorStays { agent });
     }
     if let Some(agent) = (0..n).filter(counts).find(|agent| dry_loss_w(&setup.agents[*agent]).is_some()) {
         return Err(NoPrediction::DryFriction { agent });

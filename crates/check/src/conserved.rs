@@ -149,8 +149,9 @@ impl Conserved<'_> {
         let agent = &self.setup.agents[i];
         if is_its_own_reference(agent) && !agent.pushes.is_empty() {
             let degree: f64 = self.heard[i].iter().filter_map(|edge| edge.weight.constant()).sum();
-            let by_mass = (self.alpha[i][1] + degree) / self.alpha[i][0] / agent.robot.theta[0];
-            let shift = impulses(agent, axis).map(|impulse| Tally::of(by_mass * impulse));
+            let by_force = (self.alpha[i][1] + degree) / self.alpha[i][0];
+            let moved = impulses(agent, axis).zip(agent.robot.theta.first());
+            let shift = moved.map(|(impulse, mass)| Tally::of(by_force * impulse / mass));
             return shift.ok_or(NoPrediction::Pushed { agent: i });
         }
         if agent.manipulability == 0.0 {

@@ -324,7 +324,7 @@ impl Case<'_> {
     /// Whether an accelerometer gives too much.
     pub fn is_biased(&self) -> bool {
         let laws = self.agents.iter().filter_map(|agent| self.setup.agents[*agent].law.downcast::<ThrustLaw>());
-        laws.into_iter().any(|law| matches!(law.design, ThrustKind::ByAcceleration { bias, .. } if bias != [0.0; 3]))
+        laws.into_iter().any(|law| law.design.bias() != [0.0; 3])
     }
 
     /// Whether estimates of lengths are.

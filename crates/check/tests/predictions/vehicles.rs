@@ -201,6 +201,28 @@ fn why_nothing_is_known_of_vehicles_is_said() {
     for design in [adaptive, by_acceleration] {
         assert_eq!(said(design, |_| ()), Some(NoPrediction::ErrorStays { agent: 0 }));
     }
+    // Who is heard by nobody moves nothing, but with a bias it comes nowhere to rest.
+    let with_listener = |design: ThrustKind| {
+        let mut agents = to_be(differentiable, false);
+        agents[3] = moving(design, 3, false);
+        fixed(agents, 90.0)
+    };
+    for design in [designs(1.2 * MASS_KG)[2], designs(1.2 * MASS_KG)[3]] {
+        let setup = with_listener(design);
+        let (value, outcome) = (predict(&setup).unwrap().value, run(&setup));
+        for (agent, axis) in (0..4).flat_map(|agent| (0..3).map(move |axis| (agent, axis))) {
+            let x = *column(&outcome, agent, Signal::Position, axis).last().unwrap();
+            assert!((x - value[axis]).abs() < 1e-5, "{design:?} agent {agent}: {x} is not {}", value[axis]);
+        }
+        let mut biased = setup;
+        let drifts = biased.agents[3].change_law(|law: &mut ThrustLaw| {
+            if let ThrustKind::ByAcceleration { bias, .. } = &mut law.design {
+                bias[2] = 0.01;
+            }
+        });
+        let said = matches!(design, ThrustKind::ByAcceleration { .. }).then_some(NoPrediction::ErrorStays { agent: 3 });
+        assert_eq!((drifts, predict(&biased).err()), (true, said));
+    }
     fn push(setup: &mut Setup, until_s: f64) {
         let gust = || Function::Formula((Expression::variable(0) * 3.0).sin_of());
         let course = Course::Each(vec![gust(), gust(), gust()]);

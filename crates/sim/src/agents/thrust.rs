@@ -101,6 +101,14 @@ impl ThrustKind {
         }
     }
 
+    /// What an accelerometer gives too much on each axis, m/s²; zero where there is none.
+    pub fn bias(self) -> [f64; 3] {
+        match self {
+            ThrustKind::ByAcceleration { bias, .. } => bias,
+            ThrustKind::Continuous | ThrustKind::Differentiable { .. } | ThrustKind::Adaptive { .. } => [0.0; 3],
+        }
+    }
+
     fn is_by_acceleration(self) -> bool {
         matches!(self, ThrustKind::ByAcceleration { .. })
     }
