@@ -1016,7 +1016,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "changes-sign")
+             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1189,46 +1189,63 @@ def links(agent, root, locked):
     for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], False)
     return found
 
-# The joints of a URDF from the tip to the base: (kind, whether it moves, the angle at which it is locked, axis, rpy, xyz).
+# A joint of a URDF: `locked` is where it stands if it is.
+Joint = collections.namedtuple("Joint", "kind moves locked axis rpy xyz")
+
+# The joints of a URDF from the tip to the base.
 @of_urdf
 def path(agent, root, locked):
-    def numbers(element, key):
-        x, y, z = (decimal(x) for x in ("0 0 0" if element is None else element.get(key, "0 0 0")).split())
-        return [x, y, z]
-
+    numbers = lambda element, key, usual="0 0 0": [decimal(x) for x in (usual if element is None else element.get(key, usual)).split()]
     joints, link = {joint.find("child").get("link"): joint for joint in root.findall("joint")}, agent.gains["end_effector"]["link"]
     found = []
     while link in joints:
         joint = joints.pop(link)
         origin, link, angle = joint.find("origin"), joint.find("parent").get("link"), locked.get(joint.get("name"))
-        found.append((joint.get("type"), joint.get("type") in MOVING and angle is None, exact(angle or 0, "locked"),
-                      numbers(joint.find("axis"), "xyz"), numbers(origin, "rpy"), numbers(origin, "xyz")))
+        found.append(Joint(joint.get("type"), joint.get("type") in MOVING and angle is None, exact(angle or 0, "locked"),
+                           numbers(joint.find("axis"), "xyz", "1 0 0"), numbers(origin, "rpy"), numbers(origin, "xyz")))
     return found
 
-# A vector, turned about axis k.
-def turned(at, k, angle):
-    (i, j), sin, cos, at = ((k + 1) % 3, (k + 2) % 3), sine((angle,) * 2, False), sine((angle,) * 2, True), list(at)
-    at[i], at[j] = add(multiply(cos, at[i]), minus(multiply(sin, at[j]))), add(multiply(sin, at[i]), multiply(cos, at[j]))
-    return at
+NOWHERE, BASIS = [(Fraction(0),) * 2] * 3, [[(Fraction(i == k),) * 2 for i in range(3)] for k in range(3)]
 
-# A vector of a link as the one that carries it sees it: turned about the axis of the joint, then by roll, pitch and yaw.
-def carried(at, angle, axis, rpy):
-    if angle != 0:
-        decided(sorted(map(abs, axis)) == [0, 0, 1], "a joint turns about an oblique axis")
-        at = turned(at, [abs(x) for x in axis].index(1), angle * sum(axis))
-    return functools.reduce(lambda at, turn: turned(at, *turn), enumerate(rpy), at)
+def dot(a, b): return functools.reduce(add, map(multiply, a, b))
+
+def cross(a, b): return [add(multiply(a[k - 2], b[k - 1]), minus(multiply(a[k - 1], b[k - 2]))) for k in range(3)]
+
+def square(entries): return functools.reduce(add, (power(x, Fraction(2)) for x in entries))
+
+def unit(axis): return [multiply((x, x), inverse(function("sqrt", square((x, x) for x in axis)))) for x in axis]
+
+# A vector, turned about one of length one: a cos φ + u × a sin φ + u (u·a) (1 − cos φ).
+def turned(at, u, angle):
+    sin, cos = sine((angle,) * 2, False), sine((angle,) * 2, True)
+    along = multiply(dot(u, at), add((1, 1), minus(cos)))
+    return [add(add(multiply(cos, x), multiply(sin, y)), multiply(along, z)) for x, y, z in zip(at, cross(u, at), u)]
+
+# A direction of a link as the one that carries it sees it: turned by the joint, then by roll, pitch and yaw.
+def carried(at, joint, angle):
+    turns = [(unit(joint.axis), angle)] if joint.kind != "prismatic" and angle != 0 else []
+    return functools.reduce(lambda at, turn: turned(at, *turn), [*turns, *zip(BASIS, joint.rpy)], at)
+
+# A place of it: what slides moves it first.
+def placed(at, joint, angle):
+    if joint.kind == "prismatic" and angle != 0: at = [add(x, multiply((angle,) * 2, u)) for x, u in zip(at, unit(joint.axis))]
+    return [add(x, (own, own)) for x, own in zip(carried(at, joint, angle), joint.xyz)]
+
+# Where the first joint that moves is, and the translations from each to the next and to the tip, as the links that carry them see them.
+def translations(scenario, agent):
+    found, at = [], [(exact(x, "at_m"),) * 2 for x in agent.gains["end_effector"].get("at_m", [0] * 3)]
+    decided(len(at) == 3, "the place of a tool has no three coordinates")
+    for joint in path(scenario, agent):
+        found, at = ([*at, *found], NOWHERE) if joint.moves else (found, at)
+        at = placed(at, joint, joint.locked)
+    return at, found
 
 # Where the first joint that moves is, and the square of all lengths from it to the tip, which no posture exceeds.
 def outstretched(scenario, agent):
-    tip = agent.gains["end_effector"]
-    length, at = (Fraction(0),) * 2, [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
-    decided(len(at) == 3, "the place of a tool has no three coordinates")
-    for kind, moves, angle, axis, rpy, xyz in path(scenario, agent):
-        decided(kind != "prismatic", "a joint that slides carries the tip")
-        if moves:
-            length, at = add(length, function("sqrt", functools.reduce(add, (power(x, Fraction(2)) for x in at)))), [(Fraction(0),) * 2] * 3
-        at = [add(own, (x, x)) for own, x in zip(carried(at, angle, axis, rpy), xyz)]
-    return [at["xyz".index(axis)] for axis in tip.get("coordinates", "xyz")], multiply(length, length)
+    decided(all(joint.kind != "prismatic" for joint in path(scenario, agent)), "a joint that slides carries the tip")
+    at, found = translations(scenario, agent)
+    length = functools.reduce(add, (function("sqrt", square(found[k:k + 3])) for k in range(0, len(found), 3)))
+    return [at["xyz".index(axis)] for axis in agent.gains["end_effector"].get("coordinates", "xyz")], multiply(length, length)
 
 # q at the start, where the text has it as numbers: one list for each of those that share a table, or one for all.
 def posture(scenario, agent):
@@ -1238,40 +1255,41 @@ def posture(scenario, agent):
             return [exact(x, "start") for x in (value[sharing.index(agent)] if isinstance(value[0], list) else value)]
     raise Undecided("a start is not stated")
 
+# The joints from the tip to the base, each with where it stands at the start.
+def standing(scenario, agent):
+    angles, upright = posture(scenario, agent), Joint("revolute", True, 0, [0, 0, 1], [0] * 3, [0] * 3)
+    joints = [upright] * 2 if agent.robot == "planar_arm" else path(scenario, agent)
+    decided(len(angles) == sum(joint.moves for joint in joints), "not every joint carries the tip")
+    return [(joint, angles.pop() if joint.moves else joint.locked) for joint in joints]
+
 # Columns of the rotation matrix of a tip at the start.
 def rotation(scenario, agent):
-    columns, angles = [[(Fraction(i == k),) * 2 for i in range(3)] for k in range(3)], posture(scenario, agent)
-    for kind, moves, angle, axis, rpy, _ in path(scenario, agent):
-        angle = angles.pop() if moves else angle
-        columns = [carried(at, angle if kind != "prismatic" else 0, axis, rpy) for at in columns]
-    decided(not angles, "not every joint carries the tip")
-    return columns
+    return functools.reduce(lambda columns, stood: [carried(at, *stood) for at in columns], standing(scenario, agent), BASIS)
 
-# The lengths that a law starts from, by the true ones.
-def estimated(agent, true):
+# The lengths that may be uncertain: of a planar arm, of a tool, or of all that moves.
+def lengths(scenario, agent):
+    if agent.robot == "planar_arm": return [(x, x) for x in planar(agent.body)[1]]
+    return translations(scenario, agent)[1][0 if agent.gains["end_effector"].get("uncertain", "tool") == "chain" else -3:]
+
+# The same as a law starts from them.
+def estimated(scenario, agent):
     kind, body = choice(agent.gains.get("kinematic_start", {"scaled": Fraction(6, 5)}), "kinematic_start")
-    factor = {"zero": Fraction(0), "true": Fraction(1)}.get(kind) if kind != "scaled" else exact(body, "scaled")
-    return [multiply((factor,) * 2, x) for x in true] if factor is not None else [(exact(x, kind),) * 2 for x in listed(body, kind)]
+    if kind not in ("zero", "true", "scaled"): return [(exact(x, kind),) * 2 for x in listed(body, kind)]
+    factor = exact(body, kind) if kind == "scaled" else Fraction(kind == "true")
+    return [multiply((factor,) * 2, x) for x in lengths(scenario, agent)]
 
 # Columns of the estimated Jacobian of a tip at the start: its place in the base, and of a pose how the link turns.
 def jacobian(scenario, agent):
-    angles, columns, tip = posture(scenario, agent), [], table(agent.gains.get("end_effector", {}), "end_effector")
-    if agent.robot == "planar_arm":
-        along = lambda angle, x: [multiply(x, minus(sine((angle,) * 2, False))), multiply(x, sine((angle,) * 2, True))]
-        first, second = map(along, (angles[0], sum(angles)), estimated(agent, [(x, x) for x in planar(agent.body)[1]]))
-        return [list(map(add, first, second)), second]
-    decided(tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
-    at = [(exact(x, "at_m"),) * 2 for x in tip.get("at_m", [0] * 3)]
-    for kind, moves, angle, axis, rpy, xyz in path(scenario, agent):
-        decided(kind != "prismatic" and (kind == "fixed" or sorted(map(abs, axis)) == [0, 0, 1]), "a joint slides, or its axis is oblique")
-        if moves:
-            at, angle, a = at if columns else estimated(agent, at), angles.pop(), [(x, x) for x in axis]
-            columns.append(([add(multiply(a[k - 2], at[k - 1]), minus(multiply(a[k - 1], at[k - 2]))) for k in range(3)], a))
-        columns = [[carried(part, angle, axis, rpy) for part in column] for column in columns]
-        at = [add(own, (x, x)) for own, x in zip(carried(at, angle, axis, rpy), xyz)]
-    decided(not angles, "not every joint carries the tip")
-    rows = ["xyz".index(name) for name in tip.get("coordinates", "xyz")]
-    return [[place[k] for k in rows] + (turn if tip.get("follows") == "pose" else []) for place, turn in columns[::-1]]
+    columns, tip, learnt = [], table(agent.gains.get("end_effector", {}), "end_effector"), estimated(scenario, agent)
+    still = translations(scenario, agent)[1][:-len(learnt)] + learnt if tip else sum(([x, *NOWHERE[1:]] for x in learnt), [])
+    at, rows = NOWHERE, tip.get("coordinates", "xyz") if tip else "xy"
+    for joint, angle in standing(scenario, agent):
+        if joint.moves:
+            u, slides, at, still = unit(joint.axis), joint.kind == "prismatic", list(map(add, at, still[-3:])), still[:-3]
+            columns.append((u, NOWHERE) if slides else (cross(u, at), u))
+            at = [add(x, multiply((angle * slides,) * 2, own)) for x, own in zip(at, u)]
+        columns, at = [[carried(part, joint, angle) for part in column] for column in columns], carried(at, joint, angle)
+    return [[place["xyz".index(k)] for k in rows] + (turn if tip.get("follows") == "pose" else []) for place, turn in columns[::-1]]
 
 # The kinds of friction at the joints of robots where there is some.
 def frictions(scenario):
@@ -1289,15 +1307,13 @@ def solid(scenario, agent):
     possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
     whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
     # A link at an end that weighs nothing moves without effort.
-    heavy = all(mass >= 0 for bodies in groups for mass, _ in bodies)
-    moves = heavy and any(whole) and any(mass for mass, _ in groups[-1])
+    moves = any(whole) and all(mass >= 0 for bodies in groups for mass, _ in bodies) and any(mass for mass, _ in groups[-1])
     return moves and not decided(possible and all(whole), "a link of a URDF may have no inertia of its own")
 
 # q enters C and g by sines and cosines of angles, and by the travel of joints that slide where one above them turns.
 def unturned(scenario, agent):
-    turned = agent.robot == "urdf" and any(slides and turned for slides, turned, *_ in links(scenario, agent))
-    decided(not turned, "directions of the axes of a URDF are not compared here")
-    return True
+    slides = agent.robot == "urdf" and any(slides and turned for slides, turned, *_ in links(scenario, agent))
+    return not slides or decided(False, "directions of the axes of a URDF are not compared here")
 
 # Masses, lengths, centres of mass and central inertias of a planar arm.
 def planar(body):
@@ -1314,13 +1330,17 @@ def bounds_hold(agent):
     (lower,), (upper,) = body["lower"], body["upper"]
     return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
 
-# The place of an uncertain tool on its link, or the lengths of a planar arm, within the bounds that their estimates keep.
-def lengths_hold(agent):
-    tip, bounds = table(agent.gains.get("end_effector", {}), "end_effector"), table(agent.gains["bounds"], "bounds", "lower_m upper_m")
-    decided("parameter_variation" not in agent.entry and tip.get("uncertain", "tool") == "tool", "these lengths are not read here")
-    true = agent.body["length_m"] if agent.robot == "planar_arm" else tip.get("at_m", [0] * 3)
-    of = [[exact(x, "bounds") for x in listed(entries, "bounds")] for entries in (bounds["lower_m"], true, bounds["upper_m"])]
-    return len({len(entries) for entries in of}) == 1 and all(low <= x <= high for low, x, high in zip(*of))
+# Lengths that are uncertain within the bounds that their estimates keep.
+def lengths_hold(scenario, agent):
+    decided("parameter_variation" not in agent.entry, "these lengths are not read here")
+    bounds, true = table(agent.gains["bounds"], "bounds", "lower_m upper_m"), lengths(scenario, agent)
+    lower, upper = ([exact(x, "bounds") for x in listed(bounds[key], key)] for key in ("lower_m", "upper_m"))
+    return len(lower) == len(true) == len(upper) and all(low <= x[0] and x[1] <= high for low, x, high in zip(lower, true, upper))
+
+# Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g. What does not turn holds no length.
+def certain(scenario, agent):
+    kinds = [joint.kind for joint in path(scenario, agent) if joint.moves]
+    return agent.gains["end_effector"].get("uncertain", "tool") == "tool" or {*kinds[1:]} <= {"prismatic"}
 
 # M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
 # body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
@@ -1403,9 +1423,8 @@ TEXT = {
     "known-momentum": lambda scenario, own: not any(a.pushes for a in own), "set-valued-sign": lambda scenario, _: set_valued(scenario),
     "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"}, "target-at-rest": lambda scenario, own: all(map(rests, own)),
     "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law != "task_space"),
-    "lengths-within-bounds": lambda scenario, own: all(map(lengths_hold, own)),
-    # Nothing sits on a tool: its place enters the Jacobian of the tip, and neither M nor C nor g.
-    "certain-regressor": lambda scenario, own: all(a.gains["end_effector"].get("uncertain", "tool") == "tool" for a in own),
+    "lengths-within-bounds": lambda scenario, own: all(lengths_hold(scenario, agent) for agent in own),
+    "certain-regressor": lambda scenario, own: all(certain(scenario, agent) for agent in own),
 }
 
 @rule(" ".join(TEXT), "text")
@@ -1766,9 +1785,8 @@ def reached(claim):
 def singular(claim, vector):
     u, columns = [entry.number() for entry in vector.each()], jacobian(claim.scenario, *claim.own)
     require(vector, any(u) and len(u) == len(columns[0]), "is zero, or has another length")
-    of = lambda entries: functools.reduce(add, (power(x, Fraction(2)) for x in entries))
-    taken = of([functools.reduce(add, (multiply((x, x), y) for x, y in zip(u, column))) for column in columns])
-    whole = of(itertools.chain(*columns))[0]
+    taken = square([dot([(x, x) for x in u], column) for column in columns])
+    whole = square(itertools.chain(*columns))[0]
     require(vector, 10**12 * taken[1] <= whole * sum(x * x for x in u), "is not taken to zero")
 
 # What has to stay strictly between two numbers: (formula, what holds the lower one, what holds the upper one).
@@ -1815,15 +1833,12 @@ def half_turn(claim): require(claim.proof, scalar_part(claim)[1] <= 0, "is not s
 @rule("nonzero-quaternion", "fades")
 def fades(claim): require(claim.proof, all(limit(tree) == (0, 0) for tree in quaternion(claim)), "is not shown: an entry may stay")
 
-# One entry has both signs within a stretch on which it is continuous, having values throughout; the others are zero for ever.
-@rule("nonzero-quaternion", "changes-sign")
-def changes_sign(claim, entry, from_s, to_s):
-    k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim)
-    require(entry, k in range(4) and all(constant_for_ever(tree) == 0 for i, tree in enumerate(trees) if i != k), "is not the only one")
-    require(to_s, 0 <= start < end and finite(trees[k], [(start, end)]), "ends no stretch on which it has a value")
-    (a, b), (c, d) = (enclose(trees[k], (t, t)) for t in (start, end))
-    require(entry, b < 0 < c or d < 0 < a, "has one sign")
-    return f"entry {k + 1} passes zero between t = {said(start)} s and {said(end)} s"
+# Where it is a millionth of what it is at another time, no direction can be told, as the laws have it.
+@rule("nonzero-quaternion", "vanishes")
+def vanishes(claim, at_s, beside_s):
+    small, large = (enclose(squares(quaternion(claim)), (t.number(),) * 2) for t in (at_s, beside_s))
+    require(at_s, min(at_s.number(), beside_s.number()) >= 0 and 0 < large[0] >= 10**12 * small[1], "is no time at which it vanishes")
+    return f"its length at t = {said(at_s.number())} s is at most a millionth of that at {said(beside_s.number())} s"
 
 # One entry keeps away from zero.
 @rule("nonzero-quaternion", "entry-away")

@@ -8,6 +8,8 @@ transitive closures, sampling and determinants, where the checker follows trees,
 """
 
 import copy
+import functools
+import itertools
 import json
 import math
 import os
@@ -885,7 +887,12 @@ class FalseProofs(unittest.TestCase):
         base, shorter = checker.outstretched(scenario, agent)
         self.assertAlmostEqual(float(base[1][0]), 1 + 2 * math.cos(1.5), 12)
         self.assertAlmostEqual(math.sqrt(float(shorter[0])), 0.425 + math.hypot(x, y, z), 12)
-        scenario.text_of = lambda _: robot.replace('<axis xyz="0 0 1"/>', '<axis xyz="0 0.6 0.8"/>')
+        # Turned about an oblique axis the three locked joints of the wrist keep the length of what each carries.
+        scenario.text_of = lambda _: robot.replace('<axis xyz="0 0 1"/>', '<axis xyz="0 3 4"/>')
+        _, oblique = checker.outstretched(scenario, agent)
+        self.assertLess(abs(oblique[1] - oblique[0]), 1e-40)
+        self.assertLess(math.sqrt(float(oblique[1])), 0.425 + 0.3922 + 0.1333 + 0.0997 + 0.0996 + 0.15)
+        scenario.text_of = lambda _: robot.replace('type="revolute"', 'type="prismatic"')
         self.assertRaises(checker.Undecided, checker.outstretched, scenario, agent)
 
     def test_friction_and_bounds(self):
@@ -1098,13 +1105,17 @@ class FalseProofs(unittest.TestCase):
     def test_places_of_tools(self):
         name, each = "pose-ur5e", "lengths-within-bounds"
         self.accepted(name, each)
-        self.accepted(name, each, lambda entry: None, ("at_m = [0, 0, 0.15]", "at_m = [0.05, 0, 0.3]"))
-        for place in ("[0, 0, 0.31]", "[0, -0.06, 0.15]", "[0, 0, 0.049]", "[0, 0]"):
+        # From the last joint: the link of the tool begins 0.0996 m further.
+        self.accepted(name, each, lambda entry: None, ("at_m = [0, 0, 0.15]", "at_m = [0.05, 0, 0.2004]"))
+        self.accepted(name, each, lambda entry: None, ("at_m = [0, 0, 0.15]", "at_m = [0, -0.05, -0.0496]"))
+        for place in ("[0, 0, 0.2005]", "[0, 0, 0.3]", "[0, -0.06, 0.15]", "[0, 0, -0.0497]"):
             self.rejected(name, each, "by the text", lambda entry: None, ("at_m = [0, 0, 0.15]", f"at_m = {place}"))
+        # Of the whole chain there are eighteen lengths, and six bounds.
         chain = ("at_m = [0, 0, 0.15]", 'at_m = [0, 0, 0.15], uncertain = "chain"')
-        for unknown in (chain, ('name = "arm"', 'name = "arm"\nparameter_variation.uniform = 0.1')):
-            judged, found = self.judged(name, each, lambda entry: None, unknown)
-            self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
+        self.rejected(name, each, "by the text", lambda entry: None, chain)
+        unknown = ('name = "arm"', 'name = "arm"\nparameter_variation.uniform = 0.1')
+        judged, found = self.judged(name, each, lambda entry: None, unknown)
+        self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
 
     def test_half_turns_at_the_start(self):
         name, each = "pose-ur5e", "start-attitude"
@@ -1140,6 +1151,44 @@ class FalseProofs(unittest.TestCase):
         self.accepted("theorem-6", each, taken("1", "0"), scaled)
         self.rejected("pose-ur5e", each, "not taken to zero", taken("1", "0", "0", "0", "0", "0"))
 
+    def test_jacobians_through_what_slides_and_turns_about_an_oblique_axis(self):
+        folder = Path(__file__).resolve().parent / "cases"
+        text = (folder / "slider.toml").read_text()
+
+        def columns(*changes):
+            scenario = checker.Scenario(functools.reduce(lambda text, change: text.replace(*change), changes, text), folder)
+            return [[float(sum(entry)) / 2 for entry in column] for column in checker.jacobian(scenario, scenario.agents[0])]
+
+        def are(found, expected):
+            self.assertEqual(len(found), len(expected))
+            for one, other in zip(itertools.chain(*found), itertools.chain(*expected)): self.assertAlmostEqual(one, other, 14)
+
+        true, level = ('at_m = [0.05, 0, 0] }', 'at_m = [0.05, 0, 0] }\nkinematic_start = "true"'), ("-0.6435011087932844", "0")
+        # By hand: the tip is at (1.4, 0.1, 0.5) from the axis (1, 1, 1)/√3, and the tool 0.2 m from where it turns.
+        turning = [x / 3**0.5 for x in (0.5 - 0.1, 1.4 - 0.5, 0.1 - 1.4)]
+        are(columns(true, level), [turning, [0.8, 0, 0.6], [0.2, 0, 0]])
+        # A half more of the tool, which turns by a quarter, comes to lie along y of the turned frame, that is along z.
+        longer = [x / 3**0.5 for x in (0.52 - 0.1, 1.4 - 0.52, 0.1 - 1.4)]
+        are(columns(("at_m = [0.05, 0, 0] }", "at_m = [0.05, 0, 0] }\nkinematic_start.scaled = 1.1"), level),
+            [longer, [0.8, 0, 0.6], [0.22, 0, 0]])
+        # With all of the chain, (0, 0, 1), (0.1, 0, 0) and the tool; what the slide adds is known.
+        chain = ("at_m = [0.05, 0, 0] }", 'at_m = [0.05, 0, 0], uncertain = "chain" }\nkinematic_start.scaled = 2')
+        whole = [x / 3**0.5 for x in (0.7 - 0.2, 2.4 - 0.7, 0.2 - 2.4)]
+        are(columns(chain, level), [whole, [0.8, 0, 0.6], [0.4, 0, 0]])
+        # The slide locked where it stands: its travel is then a length like others.
+        locked = ('robot.urdf = { file = "slider.urdf" }', 'robot.urdf = { file = "slider.urdf", locked.slide = 0.5 }')
+        start = ("[2.0943951023931953, 0.5, ", "[2.0943951023931953, ")
+        are(columns(true, level, locked, start), [turning, [0.2, 0, 0]])
+        posed = ("at_m = [0.05, 0, 0] }", 'at_m = [0.05, 0, 0], follows = "pose" }\nkinematic_start = "true"')
+        third = 1 / 3**0.5
+        are(columns(posed, level), [[*turning, third, third, third], [0.8, 0, 0.6, 0, 0, 0], [0.2, 0, 0, 0, 1, 0]])
+        name, each = "slider", "regular-jacobian"
+        self.accepted(name, each)
+        self.rejected(name, each, "not taken to zero", lambda entry: None, ("-0.6435011087932844", "-0.6436"))
+        self.rejected(name, each, "not taken to zero", lambda entry: None, ("[0.05, 0, 0]", "[0.05, 0, 0.001]"))
+        self.accepted(name, "certain-regressor")
+        self.rejected(name, "certain-regressor", "by the text", lambda entry: None, chain)
+
     def test_attitudes_that_vanish(self):
         name, each, old = "theorem-7", "nonzero-quaternion", "target.formulas = [0, 0, 0, 1] "
 
@@ -1149,24 +1198,27 @@ class FalseProofs(unittest.TestCase):
         def fades(entry):
             entry.update(answer="violated", proof={"kind": "fades"})
 
-        def turns(number, from_s, to_s):
-            proof = {"kind": "changes-sign", "entry": number, "from_s": from_s, "to_s": to_s}
-            return lambda entry: entry.update(answer="violated", proof=proof)
+        def vanishes(at_s, beside_s):
+            return lambda entry: entry.update(answer="violated", proof={"kind": "vanishes", "at_s": at_s, "beside_s": beside_s})
         self.accepted(name, each, fades, target("exp(-t)", "1/(1+t)", 0, "exp(-t)*sin(t)"))
         self.rejected(name, each, "may stay", fades, target("exp(-t)", 0, 0, "1e-9"))
         self.rejected(name, each, "may stay", fades)
+        words = "no time at which"
         over = target(0, 0, 0, "1 - t/90")
-        self.accepted(name, each, turns(4, "89", "91"), over)
-        self.rejected(name, each, "one sign", turns(4, "91", "92"), over)
-        self.rejected(name, each, "one sign", turns(4, "80", "90"), over)
-        self.rejected(name, each, "ends no stretch", turns(4, "91", "89"), over)
-        self.rejected(name, each, "ends no stretch", turns(4, "-1", "91"), over)
-        self.rejected(name, each, "not the only one", turns(3, "89", "91"), over)
-        self.rejected(name, each, "not the only one", turns(5, "89", "91"), over)
-        self.rejected(name, each, "not the only one", turns(4, "89", "91"), target(0, 0, "1e-9", "1 - t/90"))
+        self.accepted(name, each, vanishes("90", "0"), over)
+        # A millionth of the first length, and a little more.
+        self.accepted(name, each, vanishes("89.99991", "0"), over)
+        self.rejected(name, each, words, vanishes("89.9999", "0"), over)
+        self.rejected(name, each, words, vanishes("0", "90"), over)
+        self.rejected(name, each, words, vanishes("90", "90"), over)
+        self.rejected(name, each, words, vanishes("-90", "0"), target(0, 0, 0, "1 + t/90"))
+        self.rejected(name, each, words, vanishes("90", "-1"), over)
+        # Several entries pass zero together, or one after the other.
+        self.accepted(name, each, vanishes("90", "0"), target("t/30 - 3", 0, "2 - t/45", "1 - t/90"))
+        self.rejected(name, each, words, vanishes("90", "0"), target("t/30 - 3", 0, "2 - t/45", "1 - t/91"))
+        self.rejected(name, each, words, vanishes("90", "0"), target(0, 0, 0, 0))
         # A pole has two signs beside it and passes no zero.
-        pole = target(0, 0, 0, "1/(t - 90)")
-        _, found = self.judged(name, each, turns(4, "89", "91"), pole)
+        _, found = self.judged(name, each, vanishes("90", "89"), target(0, 0, 0, "1/(t - 90)"))
         self.assertNotIn(checker.ACCEPTED, [entry[3] for entry in found if entry[0] == each], found)
 
     def test_motions_that_swing_ever_wider(self):

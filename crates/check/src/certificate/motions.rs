@@ -3,7 +3,7 @@
 use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::Setup;
 use forwardstep_sim::reference::Desired;
-use forwardstep_sim::trajectory::{Path, Trajectory};
+use forwardstep_sim::trajectory::{LeastNorm, Path, Trajectory};
 
 use super::courses::Course;
 use super::enclosure::{Reach, enclosed, found};
@@ -21,9 +21,6 @@ use crate::{Answer, Id};
 /// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
 const LOOKS: u32 = 20_000;
 const LATER: u32 = 30;
-/// Halvings of the stretch around a zero.
-const HALVINGS: i32 = 30;
-const FOR_EVER: Interval = Interval { low: 0.0, high: f64::INFINITY };
 /// Room, as a part, for sums that are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
 
@@ -175,28 +172,16 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     }
 }
 
-/// That all entries of a quaternion go to zero, or that the only one that is not zero for ever changes its sign.
+/// That all entries of a quaternion go to zero, or a time at which its norm is a millionth of what it is at another.
 fn vanishes(target: &Trajectory, entries: &[Course<'_>], end_s: f64) -> Option<Proof> {
     let zero = Interval::point(0.0);
     if entries.iter().all(|entry| entry.formula().is_some_and(|formula| limit(formula) == Limit::Near(zero))) {
         return Some(Proof::Fades);
     }
-    let mut others = entries.iter().enumerate().filter(|(_, entry)| entry.enclose(FOR_EVER) != zero);
-    let (Some((entry, course)), None) = (others.next(), others.next()) else { return None };
     let quaternion = target.quaternion(target.axes().saturating_sub(4))?;
-    let found = quaternion.vanishes_later(end_s)?;
-    let sign = |t_s: f64| {
-        let within = course.enclose(Interval::point(t_s));
-        (!within.holds(0.0)).then_some(within.low > 0.0)
-    };
-    let around =
-        |k: i32| [-1.0, 1.0].map(|side| (found.t_s + side * found.every_s * libm::exp2(-f64::from(k))).max(0.0));
-    let [from_s, to_s] = (1..HALVINGS).map(around).find(|[from_s, to_s]| {
-        let [before, after] = [*from_s, *to_s].map(sign);
-        before.zip(after).is_some_and(|(before, after)| before != after)
-            && course.enclose(Interval { low: *from_s, high: *to_s }).is_finite()
-    })?;
-    Some(Proof::ChangesSign { entry, from_s: Number::written(from_s), to_s: Number::written(to_s) })
+    let least = Some(quaternion.least_norm(end_s)).filter(LeastNorm::vanishes);
+    let found = least.or_else(|| quaternion.vanishes_later(end_s))?;
+    Some(Proof::Vanishes { at_s: Number::written(found.t_s), beside_s: Number::written(found.largest_s) })
 }
 
 /// The first stretch on which the sum of squares keeps within something that is `good`.

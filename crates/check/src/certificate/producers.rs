@@ -1,8 +1,7 @@
 //! The list of producers: which hypotheses have one.
 
 use forwardstep_core::expression::Number;
-use forwardstep_core::robot::tree::Uncertain;
-use forwardstep_sim::{Setup, TaskSpaceLaw, TipSetup};
+use forwardstep_sim::Setup;
 
 use super::enclosure::Reach;
 use super::proof::Proof;
@@ -66,8 +65,8 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::DefinedTerms, numbers::defined_terms),
     (Id::TargetWithinReach, motions::within_reach),
     (Id::OwnOrders, text),
-    (Id::CertainRegressor, of_no_chain),
-    (Id::LengthsWithinBounds, lengths),
+    (Id::CertainRegressor, text),
+    (Id::LengthsWithinBounds, bounds),
     (Id::ConstantWeights, text),
     (Id::MutualWeights, text),
     (Id::NoDelay, text),
@@ -102,33 +101,12 @@ fn bounds(_: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
 }
 
-fn lengths(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    of_text(setup, claim).then(|| bounds(setup, claim))?
-}
-
-/// Of an uncertain tool, and of the lengths of a planar arm, the text says it; which lengths of a chain there are, and which of them a
-/// regressor holds, takes the kinematics of the tree.
-fn of_text(setup: &Setup, claim: &Claim<'_>) -> bool {
-    let stated = |agent: &usize| {
-        let law: Option<&TaskSpaceLaw> = setup.agents.get(*agent).and_then(|agent| agent.law.downcast());
-        law.is_some_and(|law| match law.tip {
-            TipSetup::Planar(_) => true,
-            TipSetup::Point { uncertain, .. } => uncertain == Uncertain::Tool,
-        })
-    };
-    claim.agents.iter().all(stated)
-}
-
 /// That Ĵ is singular at the start. That it stays regular, a run watches.
 fn regular_jacobian(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    if claim.answer != Answer::Violated || !of_text(setup, claim) {
+    if claim.answer != Answer::Violated {
         return None;
     }
     let agent = setup.agents.get(*claim.agents.first()?)?;
     let vector = left_null(agent, agent.law.downcast()?)?;
     Some(Proof::LeftNull(vector.into_iter().map(Number::written).collect()))
-}
-
-fn of_no_chain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    of_text(setup, claim).then(|| text(setup, claim))?
 }

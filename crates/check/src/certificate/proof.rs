@@ -94,14 +94,12 @@ pub enum Proof {
     LeftNull(Vec<BigRational>),
     /// Witness: every entry of a quaternion goes to zero as t → ∞.
     Fades,
-    /// Witness: between two times, s, this entry of a quaternion, from zero, changes its sign; the others are always zero.
-    ChangesSign {
-        /// Which.
-        entry: usize,
-        /// Before.
-        from_s: BigRational,
-        /// After.
-        to_s: BigRational,
+    /// Witness: a time at which the norm of a quaternion is at most a millionth of what it is at another.
+    Vanishes {
+        /// When, s.
+        at_s: BigRational,
+        /// The other, s.
+        beside_s: BigRational,
     },
     /// Witness: a parameter, or a length, lies outside of the bounds of its estimate, by the text of the scenario.
     Outside,

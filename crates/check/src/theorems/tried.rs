@@ -4,7 +4,9 @@
 //! known, under (5) with M = 1. With z(0) = x^(k−1)(0) that leaves s ≡ 0;
 //! with another z(0) s falls exponentially, which is bounded and vanishes. Runs cannot show that all of them converge, so nothing holds
 //! by them. One that ends farther from what it is for than it began is made longer: where it breaks down, or comes to be a thousand
-//! times farther, it refutes what is declared. To end farther is not enough: a run may be too short, and what swings comes back.
+//! times farther, it speaks against what is declared, and `check` says so with its start. That is no refutation in the strict sense
+//! of *violated*, whose witnesses others can replay exactly: the run is computed in floating point. To end farther is not enough: a
+//! run may be too short, and what swings comes back.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -43,7 +45,7 @@ pub(super) fn tried(setup: &Setup) -> ReferenceEvidence {
             continue;
         }
         let last = made_longer(setup, run, first);
-        if last.refutes() {
+        if last.diverges() {
             return ReferenceEvidence::Tried { runs, found: Some(last) };
         }
         farther = farther.or(Some(last));
@@ -54,7 +56,7 @@ pub(super) fn tried(setup: &Setup) -> ReferenceEvidence {
 /// What becomes of a run that ends farther than it began, for as long as it goes on doing so.
 fn made_longer(setup: &Setup, run: usize, mut last: TriedRun) -> TriedRun {
     for longer in LONGER {
-        if last.refutes() {
+        if last.diverges() {
             break;
         }
         match ended(setup, run, longer) {

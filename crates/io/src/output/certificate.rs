@@ -130,8 +130,8 @@ impl Names<'_> {
             Proof::HalfTurn => json!({ "kind": "half-turn" }),
             Proof::LeftNull(vector) => json!({ "kind": "left-null", "vector": numbers(vector) }),
             Proof::Fades => json!({ "kind": "fades" }),
-            Proof::ChangesSign { entry, from_s, to_s } => {
-                json!({ "kind": "changes-sign", "entry": entry + 1, "from_s": decimal(from_s), "to_s": decimal(to_s) })
+            Proof::Vanishes { at_s, beside_s } => {
+                json!({ "kind": "vanishes", "at_s": decimal(at_s), "beside_s": decimal(beside_s) })
             }
             Proof::Outside => json!({ "kind": "outside" }),
             Proof::FactorAway => json!({ "kind": "factor-away" }),

@@ -17,6 +17,8 @@ pub struct LeastNorm {
     pub norm: f64,
     /// The largest norm that was seen.
     pub largest: f64,
+    /// When that was, s.
+    pub largest_s: f64,
     /// How far apart the looks are, s.
     pub every_s: f64,
 }
@@ -45,9 +47,11 @@ impl Trajectory {
         let every_s = end_s / f64::from(PARTS);
         let looks: Vec<[f64; 2]> =
             (0..=PARTS).map(|k| end_s * f64::from(k) / f64::from(PARTS)).map(|t_s| [t_s, self.norm(t_s)]).collect();
-        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, every_s };
+        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, largest_s: 0.0, every_s };
         for &[t_s, norm] in &looks {
-            seen.largest = seen.largest.max(norm);
+            if norm > seen.largest {
+                seen = LeastNorm { largest: norm, largest_s: t_s, ..seen };
+            }
             if norm < seen.norm {
                 seen = LeastNorm { t_s, norm, ..seen };
             }
@@ -74,14 +78,15 @@ impl Trajectory {
     /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
     pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
         let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
-        let largest = times_s.iter().map(|t_s| self.norm(*t_s)).fold(0.0, f64::max);
+        let norms = times_s.iter().map(|t_s| (self.norm(*t_s), *t_s));
+        let (largest, largest_s) = norms.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
         times_s.windows(3).find_map(|around| {
             let [left, middle, right] = [around[0], around[1], around[2]];
             if self.norm(middle) > self.norm(left) || self.norm(middle) > self.norm(right) {
                 return None;
             }
             let t_s = self.least_between(left, right);
-            let found = LeastNorm { t_s, norm: self.norm(t_s), largest, every_s: right - left };
+            let found = LeastNorm { t_s, norm: self.norm(t_s), largest, largest_s, every_s: right - left };
             found.vanishes().then_some(found)
         })
     }

@@ -65,7 +65,11 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
         ),
         ReferenceEvidence::Tried { found: Some(run), .. } => {
             let TriedRun { start, disturbed, from, to, until_s } = run;
-            let but = if run.refutes() { "" } else { "; that shows neither" };
+            let so = if run.diverges() {
+                "as far as a computed run tells, they do not converge from there"
+            } else {
+                "that shows neither"
+            };
             let with = if *disturbed { "with an s that vanishes" } else { "without s" };
             let end = if to.is_finite() {
                 format!("is at {to:.3e} from it at {until_s} s")
@@ -73,7 +77,7 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
                 "breaks down".into()
             };
             format!(
-                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for while it begins, and {end}{but}",
+                "a run of these dynamics alone, {with}, from x = {}, is at most {from:.3e} from what they are for while it begins, and {end}; {so}",
                 list(start)
             )
         }
