@@ -6,8 +6,10 @@ use forwardstep_core::controller::Trouble;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
+use crate::forcing::forcing;
 use crate::inside::{Watch, show};
 use crate::jumps::{JumpWatch, NetworkJump};
+use crate::limit_watch::LimitWatch;
 use crate::moment::{Moment, Moments};
 use crate::network::Network;
 use crate::recording::{
@@ -110,9 +112,11 @@ pub(crate) fn simulate_with(
     // Messages of sampled controllers do not flow: nothing of the network enters the motion between two samples.
     let silent = Network::silent(setup.network.agents);
     let network = if setup.control.is_some() { &silent } else { &setup.network };
-    let mut integrator = Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries);
+    let mut integrator =
+        Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries, forcing(setup));
     let mut recorder = Recorder::new(setup, &closed_loop, rows);
     let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
+    let mut limits = LimitWatch::new(setup);
     let mut pace = Pace::new(setup);
     let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
 
@@ -130,7 +134,11 @@ pub(crate) fn simulate_with(
                 if let Some(jumps) = &mut jumps {
                     jumps.look(&mut integrator, &mut closed_loop, step);
                 }
-                if let Some(breakdown) = recorder.record(&mut integrator, &mut closed_loop, step) {
+                let left = limits.left(&mut integrator, &mut closed_loop, step);
+                // What a joint does beyond its limits is not recorded.
+                let until_s = left.as_ref().map_or(step.end_s, |left| left.t_s.next_up().min(step.end_s));
+                recorder.record(&mut integrator, &mut closed_loop, Step { end_s: until_s, ..step });
+                if let Some(breakdown) = left {
                     break Ending::BrokeDown(breakdown);
                 }
                 if let Some(breakdown) = vanished(&closed_loop, &integrator, step.end_s) {
@@ -320,20 +328,11 @@ impl<'a, 'r> Recorder<'a, 'r> {
         }
     }
 
-    /// Writes the rows that fall into `step`; the breakdown, if an enforced limit was left.
-    fn record(
-        &mut self,
-        integrator: &mut Integrator<'_>,
-        closed_loop: &mut ClosedLoop<'_>,
-        step: Step,
-    ) -> Option<Breakdown> {
+    /// Writes the rows that fall into `step`.
+    fn record(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop<'_>, step: Step) {
         while let Some(t_s) = self.rows.next_in(step) {
             self.row(integrator, closed_loop, t_s);
-            if let Some(breakdown) = self.limit_left(t_s) {
-                return Some(breakdown);
-            }
         }
-        None
     }
 
     fn row(&mut self, integrator: &mut Integrator<'_>, closed_loop: &mut ClosedLoop<'_>, t_s: f64) {
@@ -362,21 +361,5 @@ impl<'a, 'r> Recorder<'a, 'r> {
     /// Lets whoever else takes the rows know; whether the run is to go on.
     fn step_ends(&mut self) -> ControlFlow<()> {
         self.sink.as_mut().map_or(ControlFlow::Continue(()), |sink| sink.step())
-    }
-
-    fn limit_left(&self, t_s: f64) -> Option<Breakdown> {
-        for (agent, setup) in self.setup.agents.iter().enumerate().filter(|(_, agent)| agent.enforce_limits) {
-            for (axis, description) in setup.robot.axes.iter().enumerate() {
-                // Positions are an agent's first columns.
-                let value = *self.recording.columns[self.first_column[agent] + axis].values.last()?;
-                if let Some(limits) = description.position_limits
-                    && !(limits[0]..=limits[1]).contains(&value)
-                {
-                    let cause = BreakdownCause::PositionLimit { value, limits };
-                    return Some(Breakdown { t_s, agent, signal: Signal::Position, axis, cause });
-                }
-            }
-        }
-        None
     }
 }

@@ -38,7 +38,7 @@ pub struct Metrics {
     pub final_tracking_error: Option<f64>,
     /// Largest and final speed over all agents and axes.
     pub speed: Option<Speed>,
-    /// The largest |τ| of every agent and axis.
+    /// The largest |τ| of every agent and axis, at the rows that are recorded.
     pub peak_torques: Vec<Peak>,
     /// Limits that were exceeded, or reached where they are enforced.
     pub limits_reached: Vec<LimitReached>,
@@ -72,7 +72,7 @@ pub struct Peak {
 /// The speeds of a run, rad/s or m/s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Speed {
-    /// The largest |q̇|.
+    /// The largest |q̇|, at the rows that are recorded.
     pub largest: Peak,
     /// The largest |q̇| at the last row.
     #[serde(deserialize_with = "number::or_nan")]

@@ -235,6 +235,14 @@ impl<'a> ClosedLoop<'a> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
     }
 
+    /// The position and the velocity of an agent in the state `x`.
+    pub(crate) fn motion(&mut self, agent: usize, t_s: f64, x: &[f64], q: &mut [f64], dq: &mut [f64]) {
+        let degree = self.ports[agent].degree;
+        if let Some(block) = self.blocks.iter_mut().find(|block| block.degree.contains(&degree)) {
+            block.columns.motion(agent, t_s, &x[block.state.clone()], q, dq);
+        }
+    }
+
     /// Takes note of the end of a step, in a state that has just been evaluated.
     pub(crate) fn reached(&mut self, t_s: f64) {
         if let Some(driven) = &mut self.driven {

@@ -2,6 +2,7 @@
 
 mod failure;
 
+use super::forcing::Forcing;
 use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
 use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
@@ -53,6 +54,7 @@ pub(crate) struct Integrator<'a> {
     fixed_step_s: Option<f64>,
     min_step_s: f64,
     max_step_s: f64,
+    forcing: Forcing,
     forget_s: f64,
     end_s: f64,
 
@@ -79,8 +81,7 @@ pub(crate) struct Integrator<'a> {
 impl<'a> Integrator<'a> {
     /// Prepares a run over [0, `end_s`] from the state `x`.
     ///
-    /// `ports` says where every agent's message of `entries` numbers stands; `sums` and `agents` are the sizes of what is
-    /// heard.
+    /// `ports` says where every agent's message of `entries` numbers stands; `forcing` is what enters as a function of time.
     pub(crate) fn new(
         network: &'a Network,
         solver: &Solver,
@@ -88,6 +89,7 @@ impl<'a> Integrator<'a> {
         x: Vec<f64>,
         ports: Vec<Port>,
         entries: usize,
+        forcing: Forcing,
     ) -> Self {
         let (tableau, rtol, atol, fixed_step_s) = match solver.method {
             Method::Adaptive { rtol, atol } => (&DORMAND_PRINCE, SHARE_PER_STEP * rtol, SHARE_PER_STEP * atol, None),
@@ -113,6 +115,7 @@ impl<'a> Integrator<'a> {
             fixed_step_s,
             min_step_s: solver.min_step_s,
             max_step_s: solver.max_step_s.unwrap_or(f64::INFINITY),
+            forcing,
             forget_s: network.max_delay_s(),
             end_s,
             step: Step { start_s: 0.0, end_s: 0.0 },
@@ -168,6 +171,10 @@ impl<'a> Integrator<'a> {
             self.proposed_step_s = self.fixed_step_s.unwrap_or_else(|| self.first_step());
         }
         let mut limit_s = self.max_step_s;
+        if self.fixed_step_s.is_none() {
+            let wish_s = self.proposed_step_s.min(limit_s).min(self.end_s - t);
+            limit_s = limit_s.min(self.forcing.longest_step_s(t, wish_s));
+        }
         if !self.smooth {
             let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
             if self.proposed_step_s > shortest_s && self.proposed_step_s < WORTH_CUTTING * shortest_s {
@@ -390,6 +397,15 @@ impl<'a> Integrator<'a> {
 
     /// The state and what is heard at `t_s` within the last step; at its ends from the inside.
     pub(crate) fn look_inside(&mut self, t_s: f64) -> (&[f64], &Heard) {
+        self.state_at(t_s);
+        let (offset, end_s) = (self.history.draft().0, self.step.end_s);
+        self.hearing.look(&self.timeline, &self.history, t_s, (end_s, 1.0, offset));
+        self.hearing.gather(&self.history, &self.stage, &mut self.heard);
+        (&self.stage, &self.heard)
+    }
+
+    /// The state alone.
+    pub(crate) fn state_at(&mut self, t_s: f64) -> &[f64] {
         let Step { start_s, end_s } = self.step;
         let h = end_s - start_s;
         if t_s >= end_s {
@@ -401,10 +417,7 @@ impl<'a> Integrator<'a> {
             }
             combine(&self.x0, &weights[..self.tableau.c.len()], &self.k, &mut self.stage);
         }
-        let offset = self.history.draft().0;
-        self.hearing.look(&self.timeline, &self.history, t_s, (end_s, 1.0, offset));
-        self.hearing.gather(&self.history, &self.stage, &mut self.heard);
-        (&self.stage, &self.heard)
+        &self.stage
     }
 }
 

@@ -10,8 +10,10 @@
 //! - `kernels`: loops over columns.
 //! - `integrator`: the stepping itself, and why it ends (`integrator/failure`).
 //! - `stiffness`: how fast the fastest motion is.
+//! - `forcing`: what enters as a function of time, and how long a step may be that sees it.
 //! - `radio`: what is sent and heard at the samples of digital controllers.
 
+mod forcing;
 mod hearing;
 mod history;
 mod integrator;
@@ -22,6 +24,7 @@ mod system;
 mod tableau;
 mod timeline;
 
+pub(crate) use forcing::{Forcing, Shape};
 pub(crate) use hearing::{Heard, Port, Refuted};
 pub(crate) use integrator::{Failure, FailureCause, Integrator};
 pub(crate) use radio::Radio;

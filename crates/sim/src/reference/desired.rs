@@ -59,6 +59,14 @@ pub enum DesiredPolynomial {
     },
 }
 
+impl Desired {
+    /// The number of the variable t of a protocol.
+    pub(crate) fn protocol_time(&self) -> usize {
+        let order = self.polynomial.order();
+        order + 2 + if self.follows_target { order + 1 } else { 0 }
+    }
+}
+
 impl DesiredPolynomial {
     /// Its coefficients, with a leading one where it is given by its roots.
     fn coefficients(&self) -> Result<Vec<f64>, forwardstep_core::reference::RootsError> {

@@ -126,6 +126,19 @@ impl Path {
         }
     }
 
+    /// Intervals that hold the value and the first four derivatives at every time in `t_s`; everything where nothing could be shown.
+    pub(crate) fn enclose_jet(&self, t_s: Interval) -> [Interval; 5] {
+        match self {
+            Path::Formula(formula) => formula.enclose_jet(t_s),
+            Path::Spline(spline) => spline.enclose_jet(t_s),
+            Path::Sinusoids { offset, waves } => std::array::from_fn(|k| {
+                let size = |wave: &Sinusoid| wave.amplitude.abs() * wave.rad_per_s.abs().powi(k as i32);
+                let most: f64 = waves.iter().map(size).sum();
+                Interval::point(if k == 0 { *offset } else { 0.0 }) + Interval { low: -most, high: most }
+            }),
+        }
+    }
+
     /// Σₖ `weights[k]` · (k-th derivative).
     fn weighted(&self, weights: &[f64], t_s: f64) -> f64 {
         match self {
