@@ -133,6 +133,8 @@ def main():
             browser.open(page)
             expect(all(pixels > 200 for pixels in painted(browser)), f"{name} on a phone: an empty picture")
             quiet(browser, f"{name} on a phone", 390)
+            stays = value(browser, "getComputedStyle(document.querySelector('.compared th[scope=row]')).position")
+            expect(stays == "sticky", f"{name} on a phone: names of rows leave when the table is moved")
             print(f"{'ok    ' if not problems else '      '} {name}: {len(runs)} runs side by side")
             if name == "ships":
                 # What is drawn is what the table says: the largest torque of each run.

@@ -17,6 +17,8 @@ import tarfile
 import tempfile
 import time
 
+import known
+import layout
 import webdriver
 from checks import TOLERANCE_M, checked, expect, problems, settled, value, waited
 from curves import chart, paths
@@ -361,6 +363,8 @@ def main():
             browser.open(folder / "shaped" / "report.html", query)
             shapes(browser, f"shaped{query}")
             quiet(browser, f"shaped{query}")
+        known.all_of(browser, run, program, folder)
+        layout.all_of(browser, run, folder)
         page = run("from-a-log")
         browser.open(page)
         flights(browser, "from-a-log", page)

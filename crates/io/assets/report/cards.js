@@ -1,7 +1,9 @@
 // What each card shows. A card has picks (a joint, a signal, an agent) and turns them into series.
 
 const agents = index.agents;
-const shownAgents = new Set(agents.keys());
+// Everybody who has curves: the agents, and last a leader that is none.
+const everybody = [...agents.map((agent) => agent.name), ...(index.leader ? [leading(index.leader.name, true)] : [])];
+const shownAgents = new Set(everybody.keys());
 const signals = index.signals;
 const mostAxes = Math.max(0, ...agents.map((a) => a.axes.length));
 const SAME = (items) => (new Set(items).size === 1 ? items[0] : null);
@@ -13,9 +15,41 @@ const joints = Array.from({ length: mostAxes }, (_, axis) => {
 });
 const unitOf = (axis, read) => [...new Set((joints[axis]?.units ?? []).map(read))].join(" or ");
 
-const ofAgents = (columns, axis, style = {}, log = false) =>
-  agents.flatMap((agent, i) => {
-    const k = axis === null ? columns[i] : columns[i]?.[axis];
+// Of more agents than this quantiles are drawn, and curves of those that are chosen.
+const MOST_CURVES = 24;
+const shownCurves = () => agents.filter((_, i) => shownAgents.has(i)).length;
+const isBanded = () => shownCurves() > MOST_CURVES;
+const QUANTILES = [[1, "greatest", 1, [4, 3]], [0.9, "nine tenths are below", 1.2, []], [0.5, "median", 2.2, []], [0.1, "a tenth is below", 1.2, []], [0, "least", 1, [4, 3]]];
+const quantiles = (columns, log) => {
+  const all = columns.map((k) => data.values("main", k));
+  const beyond = all.map(({ beyond_s }) => beyond_s).filter((t) => t !== null);
+  const curves = QUANTILES.map(() => []);
+  const row = new Float64Array(all.length);
+  for (let i = 0; i < all[0].length; i++) {
+    // Of what is not known of all there is no quantile.
+    const isWhole = all.every((values) => values[i] !== null);
+    all.forEach((values, k) => (row[k] = values[i]));
+    if (isWhole) row.sort();
+    QUANTILES.forEach(([share], q) => {
+      const v = isWhole ? row[Math.round(share * (row.length - 1))] : null;
+      curves[q].push(v !== null && (!log || v > 0) ? v : null);
+    });
+  }
+  return curves.map((values, q) => {
+    const [, label, width, dash] = QUANTILES[q];
+    return { label, keyed: true, colour: colour(label === "median" ? "--ink" : "--muted"), width, dash, values: Object.assign(values, { beyond_s: beyond.length ? Math.min(...beyond) : null }) };
+  });
+};
+const ofAgents = (columns, axis, style = {}, log = false) => {
+  const columnOf = (i) => (axis === null ? columns[i] : columns[i]?.[axis]);
+  if (!isBanded()) return curvesOf(agents.keys(), columnOf, style, log);
+  const own = [...agents.keys()].filter((i) => shownAgents.has(i) && columnOf(i) != null);
+  const chosen = curvesOf(own.filter((i) => String(i) === document.getElementById("chosen").value), columnOf, { width: 2, ...style, keyed: true }, log);
+  return own.length === 0 || style.suffix ? chosen : [...quantiles(own.map(columnOf), log), ...chosen];
+};
+const curvesOf = (some, columnOf, style, log) =>
+  [...some].flatMap((i) => {
+    const [agent, k] = [agents[i], columnOf(i)];
     if (k == null) return [];
     return [{ label: agent.name + (style.suffix ?? ""), colour: colour(`--a${i}`), agent: i, show: shownAgents.has(i), values: data.values("main", k, log), ...style }];
   });
@@ -27,18 +61,27 @@ const limitLines = (axis, read, label) => {
 };
 const both = (v) => (v == null ? [] : [v, -v]);
 
-const jointPick = { id: "joint", options: joints.map((j) => [String(j.axis), j.name]) };
+// The joints of which something is drawn.
+const jointPick = (columnsOf) => ({
+  id: "joint",
+  name: "joint",
+  options: (picks) => {
+    const columns = columnsOf(picks) ?? [];
+    return joints.filter((j) => columns.some((axes) => axes?.[j.axis] != null)).map((j) => [String(j.axis), j.name]);
+  },
+});
 
 // A leader that is no agent, beside those that follow it.
 const ofLeader = (columns, axis) => {
   const k = columns?.[axis];
   if (k == null) return [];
-  return [{ label: leading(index.leader.name, true), colour: colour("--ink"), width: 2.2, dash: [8, 3], values: data.values("main", k) }];
+  const agent = agents.length;
+  return [{ label: everybody[agent], agent, show: shownAgents.has(agent), colour: colour("--ink"), width: 2.2, dash: [8, 3], values: data.values("main", k) }];
 };
 
 const perJoint = (columns, unit, lines = () => [], leader = null) => ({
-  picks: [jointPick],
-  build: ([joint]) => ({ unit: unitOf(+joint, unit), series: [...ofAgents(columns, +joint), ...ofLeader(leader, +joint)], lines: lines(+joint) }),
+  picks: [jointPick(() => columns)],
+  build: ([joint]) => joint == null ? { series: [] } : ({ unit: unitOf(+joint, unit), series: [...ofAgents(columns, +joint), ...ofLeader(leader, +joint)], lines: lines(+joint) }),
 });
 
 const dots = ["z", "ż", "z̈", "z⃛"];
@@ -119,7 +162,7 @@ const cards = {
         key: true,
         series: [
           ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
-          ...(d.predicted == null ? [] : [{ label: "predicted", colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
+          ...(d.predicted == null ? [] : [{ label: "predicted", keyed: true, colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
           { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
@@ -133,26 +176,26 @@ const cards = {
     ...velocity,
     build: (picks) => {
       const built = velocity.build(picks);
-      const z = signals.reference[0] ? ofAgents(signals.reference[0], +picks[0], { suffix: ", z", dash: [4, 3], width: 1.1 }) : [];
+      const z = signals.reference[0] && picks[0] != null ? ofAgents(signals.reference[0], +picks[0], { suffix: ", z", dash: [4, 3], width: 1.1 }) : [];
       return { ...built, series: [...built.series, ...z] };
     },
   },
   error: perJoint(signals.s, (u) => u.s),
   torque: perJoint(signals.tau, (u) => u.tau, (axis) => limitLines(axis, (a) => both(a.effort_limit), "limit")),
-  external: perJoint(signals.tau_ext, (u) => u.tau),
+  external: perJoint(signals.tau_ext, (u) => u.tau_ext),
   reference: {
-    picks: [{ id: "order", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick],
+    picks: [{ id: "order", name: "derivative", options: signals.reference.slice(1).map((_, k) => [String(k + 1), referenceName(k + 1)]) }, jointPick(([order]) => signals.reference[+order])],
     build: ([order, joint]) => ({ unit: order == null ? "" : unitOf(+joint, (u) => u.reference[+order]), series: order == null ? [] : ofAgents(signals.reference[+order], +joint) }),
   },
   estimate: {
     picks: [
-      { id: "who", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
-      { id: "what", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])), first: (picks, options) => liveliest(picks[0], options) },
+      { id: "who", name: "agent", options: withEstimates.length === 0 ? [] : [...withEstimates.map((i) => [String(i), agents[i].name]), ...(withEstimates.length > 1 ? [["all", "compare agents"]] : [])] },
+      { id: "what", name: "parameters", options: (picks) => (picks[0] == null ? [] : parameterOptions(picks[0])), first: (picks, options) => liveliest(picks[0], options) },
     ],
     build: ([who, what]) => ({ grid: "estimates", unit: index.energy && "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
   },
   balance: {
-    picks: [{ id: "balance", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
+    picks: [{ id: "balance", name: "what is drawn", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
     build: ([which]) => {
       const { columns, unit } = balances[which];
       // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
@@ -161,13 +204,13 @@ const cards = {
     },
   },
   cascade: {
-    picks: [{ id: "interval", options: [["", "length"], ...joints.filter((j) => index.cascade?.low[j.axis] != null).map((j) => [String(j.axis), j.name])] }],
+    picks: [{ id: "interval", name: "what is drawn", options: [["", "length"], ...joints.filter((j) => index.cascade?.low[j.axis] != null).map((j) => [String(j.axis), j.name])] }],
     build: ([axis]) => {
       const c = index.cascade;
       if (!c) return { series: [] };
       const line = (label, k, more) => (k == null ? [] : [{ label, colour: colour("--ink"), width: 2.2, values: data.values("main", k, axis === ""), ...more }]);
-      if (axis === "") return { unit: c.unit, log: true, key: true, series: [...line("guaranteed for s ≡ 0", c.guaranteed, { dash: [6, 4], width: 1.4 }), ...line("length", c.width)] };
-      const ends = { dash: [6, 4], width: 1.4 };
+      if (axis === "") return { unit: c.unit, log: true, key: true, series: [...line("guaranteed for s ≡ 0", c.guaranteed, { dash: [6, 4], width: 1.4, keyed: true }), ...line("length", c.width)] };
+      const ends = { dash: [6, 4], width: 1.4, keyed: true };
       return { unit: unitOf(+axis, (u) => u.q), series: [...ofAgents(signals.q, +axis), ...line("lowest of all", c.low[+axis], ends), ...line("highest of all", c.high[+axis], ends)] };
     },
   },
@@ -176,8 +219,15 @@ const cards = {
     build: () => ({
       grid: "delays",
       unit: "s",
-      key: index.delays.length > 1,
-      series: index.delays.map((d, k) => ({ label: d.label, colour: ramp(k, index.delays.length), exact: true, values: data.values("delays", d.series) })),
+      key: index.delays.length > 1 || index.delays.some((d) => d.band),
+      series: index.delays.flatMap((d, k) => {
+        const line = { colour: ramp(k, index.delays.length), exact: true };
+        const values = data.values("delays", d.series);
+        if (!d.band) return [{ ...line, label: d.label, values }];
+        // The greatest and the least stand in turn; beside one of them stands the other.
+        const end = (pick) => values.map((v, row) => pick(v, values[row > 0 ? row - 1 : Math.min(1, values.length - 1)]));
+        return [{ ...line, label: `${d.label}, greatest`, values: end(Math.max) }, { ...line, label: `${d.label}, least`, width: 1, values: end(Math.min) }];
+      }),
     }),
   },
 };
@@ -185,7 +235,7 @@ const cards = {
 // Signals that only some systems have: an entry is picked, all agents are drawn.
 for (const { id, entries } of index.families) {
   cards[id] = {
-    picks: [{ id: "entry", options: entries.map((e, k) => [String(k), e.name]) }],
+    picks: [{ id: "entry", name: "entry", options: entries.map((e, k) => [String(k), e.name]).filter((_, k) => entries[k].series.some((s) => s != null)) }],
     build: ([k]) => {
       const entry = entries[+k];
       if (!entry) return { series: [] };
@@ -196,9 +246,11 @@ for (const { id, entries } of index.families) {
   };
 }
 
+const notDrawn = index.gantt.drawn_until_s === null ? "" : `not drawn after ${number(index.gantt.drawn_until_s)} s`;
+
 // The Gantt strip is drawn by hand on an empty plot, so that it zooms with the others.
 const ganttCard = () => {
-  const { rows, bars, spans, by_receiver } = index.gantt;
+  const { rows, bars, spans, by_receiver, drawn_until_s: until } = index.gantt;
   const strip = new Set(spans.map((s) => s[2])).size > 1 ? 1 : 0;
   const most = Math.max(1, ...bars.map((b) => b[3]));
   const rowHeight = rows.length > 40 ? 11 : 19;
@@ -231,9 +283,17 @@ const ganttCard = () => {
         ctx.fillRect(...box(start, end, row + strip, rowHeight > 12 ? 3 : 1));
       }
       ctx.globalAlpha = 1;
+      // What is not on the page is not "nobody hears anybody".
+      if (until === null || until >= max) return;
+      const left = Math.max(x(until), u.bbox.left);
+      const [top, wide, high] = [u.bbox.top, u.bbox.left + u.bbox.width - left, u.bbox.height];
+      ctx.fillStyle = colour("--strip-a");
+      ctx.fillRect(left, top, wide, high);
+      Object.assign(ctx, { font: `${11 * scale}px ui-sans-serif, system-ui, sans-serif`, fillStyle: colour("--soft"), textAlign: "center", textBaseline: "middle" });
+      ctx.fillText(notDrawn, left + 0.5 * wide, top + 0.5 * high);
     });
   return {
-    times: whole,
+    times: axisOf(whole),
     series: [{ label: "", colour: "transparent", values: [null, null] }],
     height: names.length * rowHeight + 42,
     cursor: false,

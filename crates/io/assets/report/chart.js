@@ -24,7 +24,7 @@ const CHART_EDGES = { left: 66, right: 24, top: 46, bottom: 48 };
 
 // Where times and values are in the picture; zooming in keeps where the clock stands.
 const chartLooking = (width, height, nodes) => {
-  const [from, to] = view.zoom ?? whole;
+  const [from, to] = axisOf(view.zoom ?? whole);
   const length = (to - from) / Math.max(1, camera.zoom);
   const middle = nodes[0]?.at[0] ?? 0.5 * (from + to);
   const share = Math.min(1, Math.max(0, (middle - from) / (to - from)));
@@ -39,11 +39,12 @@ const chartLooking = (width, height, nodes) => {
 // Dots where the clock stands, and where each is to be.
 const drawChartBody = (body, place, time, into) => {
   const own = chart.curves.filter((curve) => curve.body === body).reverse();
+  const last = lastPlace(body, place);
   for (const curve of own) {
-    const value = data.at("scene", curve.series, place);
+    const value = data.at("scene", curve.series, last.place);
     if (!Number.isFinite(value)) continue;
-    const at = [time, value, 0];
-    into.dots.push({ at, colour: body.vertex, leads: body.leads });
+    const at = [last.gone ? sceneTimes[last.place.row] : time, value, 0];
+    into.dots.push({ at, colour: last.gone ? GREY : body.vertex, leads: body.leads });
     if (curve.target !== null) into.crosses.push({ at: [time, data.at("scene", curve.target, place), 0], colour: body.vertex });
     into.nodes.push({ body, at, label: at, axis: curve.axis });
   }
@@ -72,17 +73,19 @@ const drawChartGrid = (pen, see, colours) => {
     pen.stroke();
   };
   const word = (text, x, y, textAlign, textBaseline) => {
-    Object.assign(pen, { fillStyle: colours.muted, font: axisFont, textAlign, textBaseline });
+    Object.assign(pen, { fillStyle: colours.muted, textAlign, textBaseline });
     pen.fillText(text, x, y);
   };
   const ticks = (from, to, pixels, room, draw) => {
     const step = stepOf((to - from) / pixels, room);
     for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++) draw(k * step, step);
   };
+  pen.font = axisFont;
   ticks(begin, end, wide, 70, (t, step) => {
     const { x } = see.project([t, low]);
     line(x, top, x, bottom);
-    word(`${tick(t, step)} s`, x, bottom + 8, "center", "top");
+    const text = timeTick(t, step);
+    word(text, Math.min(x, see.width - 3 - 0.5 * pen.measureText(text).width), bottom + 8, "center", "top");
   });
   ticks(low, high, tall, 40, (v, step) => {
     const { y } = see.project([begin, v]);
@@ -125,7 +128,7 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
   const named = frame.nodes.filter(({ body }) => few || body.vertex === hovered || body.vertex === alone || body.leads);
   const axisName = ({ body, axis }) => (chart.several ? `, ${agents[body.vertex]?.axes[axis]?.name ?? axis + 1}` : "");
   const short = (name) => (name.length > 24 ? `${name.slice(0, 23)}…` : name);
-  const words = named.map((node) => ({ ...see.project(node.at), text: short(leading(node.body.name, node.body.leads)) + axisName(node), ink: colours.agents[node.body.vertex] }));
+  const words = named.map((node) => ({ ...see.project(node.at), text: short(leading(node.body.name, node.body.leads)) + axisName(node), dot: colours.agents[node.body.vertex] }));
   words.sort((a, b) => a.y - b.y);
   const apart = 15;
   const { top, tall } = see.box;
@@ -134,11 +137,15 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
   for (let k = words.length - 1, most = top + tall; k >= 0; k--, most -= apart) words[k].y = Math.min(words[k].y, most);
   pen.font = WORDS;
   const widest = Math.max(0, ...words.map(({ text }) => pen.measureText(text).width));
-  for (const { x, y, text, ink } of words) {
+  for (const { x, y, text, dot } of words) {
     if (x < see.box.left - 1 || x > see.width) continue;
-    const before = x + widest + 16 > see.width;
-    Object.assign(pen, { textAlign: before ? "right" : "left", textBaseline: "middle", lineJoin: "round", lineWidth: 3.5, strokeStyle: colours.surface, fillStyle: ink });
-    for (const how of ["strokeText", "fillText"]) pen[how](text, x + (before ? -12 : 12), y);
+    const before = x + widest + 25 > see.width;
+    Object.assign(pen, { textAlign: before ? "right" : "left", textBaseline: "middle", lineJoin: "round", lineWidth: 3.5, strokeStyle: colours.surface, fillStyle: colours.ink });
+    for (const how of ["strokeText", "fillText"]) pen[how](text, x + (before ? -21 : 21), y);
+    pen.fillStyle = dot;
+    pen.beginPath();
+    pen.arc(x + (before ? -13 : 13), y, 3.5, 0, 2 * Math.PI);
+    pen.fill();
   }
   Object.assign(pen, { textAlign: "left", textBaseline: "alphabetic" });
 };

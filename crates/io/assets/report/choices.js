@@ -15,7 +15,7 @@ const choices = (() => {
 
   const gathered = () => ({
     t: stage.now.t, last: stage.now.t >= stage.end, playing: stage.playing(), rate: part("rate").value, alone: part("chosen").value, camera: { ...camera },
-    zoom: view.zoom, breakPoints: view.breakPoints, joint: joint.value, hidden: agents.map((_, i) => i).filter((i) => !shownAgents.has(i)),
+    zoom: view.zoom, breakPoints: view.breakPoints, joint: joint.value, hidden: everybody.map((_, i) => i).filter((i) => !shownAgents.has(i)),
     picks: Object.fromEntries(all.map((card) => [card.dataset.plot, state.get(card)?.picks ?? []])),
     open: folds().filter(([, fold]) => fold.open).map(([name]) => name),
     edge: edge(), focus: document.activeElement?.id ?? "", reload: part("reload")?.checked ?? true,

@@ -68,7 +68,14 @@ const fillCard = (mine) => {
     mine.canvas.append(element("p", { className: "none", textContent: "no value can be drawn: all are zero or not finite" }));
     return;
   }
-  mine.plot = drawPlot(mine.canvas, { times: allTimes, series: mine.series, log: mine.log });
+  const far = mine.log ? null : outliers(mine.series);
+  mine.plot = drawPlot(mine.canvas, { times: allTimes, series: mine.series, log: mine.log, within: far?.usual, unit: units.length === 1 ? units[0] : "" });
+  const note = (textContent) => mine.canvas.append(element("p", { className: "note", textContent }));
+  if (far) note(`Some values leave this axis; the largest is ${number(far.largest)}.`);
+  const lost = found.flatMap(({ run, entry: e }) => e.lines.map(({ series }) => ({ run, t: run.data.beyond("main", series) }))).filter(({ t }) => t !== null);
+  for (const { run } of lost.filter(({ run }, k) => lost.findIndex((other) => other.run === run) === k)) {
+    note(`${run.name}: beyond what the page can draw from t = ${number(Math.min(...lost.filter((other) => other.run === run).map(({ t }) => t)))} s on.`);
+  }
   offer(mine.card, mine.plot);
 };
 const fillCards = () => {
@@ -105,7 +112,8 @@ const side = (() => {
   const now = { t: 0, playing: false, since: 0 };
   let asked = 0;
   slider.max = String(end);
-  slider.step = String(end / 2000);
+  slider.step = String(end / 2000 || "any");
+  slider.disabled = play.disabled = end === 0;
   // What is measured where bodies stand, as the page of one run says it.
   const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd());
   const views = [...document.querySelectorAll(".scene")].map((card, k) => {
@@ -136,14 +144,15 @@ const side = (() => {
     picture.drawWords(ctx, see, frame, colours, { hovered: null, alone: null });
     const over = now.t > run.until_s ? `Ended at ${number(run.until_s, 4)} s. ` : "";
     const size = picture.charted ? "Positions over time. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
-    const text = over + size + picture.graphWords(heard);
+    const lost = picture.lostWords(frame);
+    const text = `${over}${size}${lost && `${lost[0].toUpperCase()}${lost.slice(1)}. `}${picture.graphWords(heard)}`;
     if (words.textContent !== text) words.textContent = text;
     canvas.setAttribute("aria-label", `${run.name} at ${number(t, 4)} s: ${picture.bodies.length} in space`);
   };
   const draw = () => {
     asked = 0;
     views.forEach(drawOne);
-    timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
+    timeWords.textContent = timeOf(now.t, end);
     slider.value = String(now.t);
     slider.setAttribute("aria-valuetext", `${number(now.t, 4)} seconds`);
     for (const plot of plots) plot.clock?.(now.t);
@@ -178,7 +187,7 @@ const side = (() => {
   };
   play.onclick = () => setPlaying(!now.playing);
   slider.oninput = () => (setPlaying(false), go(Number(slider.value)));
-  rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
+  fitRates(rate, end);
 
   const zoom = (by) => (runs.forEach(({ picture: { camera } }) => (camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by)))), ask());
   const turn = (az, el) => {

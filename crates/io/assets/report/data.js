@@ -31,7 +31,15 @@ const dataOf = (index, block) => {
   const values = (grid, k, log) => {
     const { t, start } = grids[grid];
     const from = start + k * t.length;
-    return Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || v > 0) ? v : null));
+    const list = Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || v > 0) ? v : null));
+    return Object.assign(list, { beyond_s: beyond(grid, k) });
+  };
+  // From when on a number is larger than any of single precision; null if it never is.
+  const beyond = (grid, k) => {
+    const { t, start } = grids[grid];
+    const from = start + k * t.length;
+    const row = numbers.subarray(from, from + t.length).findIndex((v) => Math.abs(v) === Infinity);
+    return row < 0 ? null : t[row];
   };
   // The value at any time, on the straight line between two rows.
   const at = (grid, k, { row, part }) => {
@@ -52,7 +60,7 @@ const dataOf = (index, block) => {
     }
     return { row: low, part: t[high] > t[low] ? (time - t[low]) / (t[high] - t[low]) : 0 };
   };
-  return { t: (grid) => Array.from(grids[grid].t), values, at, place };
+  return { beyond, t: (grid) => Array.from(grids[grid].t), values, at, place };
 };
 // A page of several runs has a block for each.
 const data = index.runs ? null : dataOf(index, document.getElementById("block").textContent);
@@ -79,6 +87,10 @@ const number = (v, digits = 4) => {
   const [mantissa, exponent] = v.toExponential(digits - 1).split("e");
   return minus(`${+mantissa} × 10${raise(+exponent)}`);
 };
+
+// A time of a run: as many places as tell its thousandths apart.
+const timePlaces = (end) => (end > 0 ? Math.max(0, Math.min(12, 4 - Math.ceil(Math.log10(end)))) : 0);
+const timeOf = (t, end) => `t = ${t.toFixed(timePlaces(end))} s of ${number(end, 6)} s`;
 
 // The label of a tick when neighbours are `step` apart.
 const tick = (v, step) => {

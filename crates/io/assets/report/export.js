@@ -7,43 +7,53 @@ const save = (name, blob) => {
 };
 const shownSeries = (plot) => plot.series.map((s, k) => ({ s, k })).filter(({ s, k }) => k > 0 && s.show && s.label);
 
-// Quotation marks as tables have them; a cell that could be taken for a formula begins with an apostrophe.
-const cell = (text) => `"${String(text).replace(/^[=+\-@\t\r]/, "'$&").replaceAll('"', '""')}"`;
-const csvOf = (plot) => {
-  const series = shownSeries(plot);
-  const rows = plot.data[0].map((t, i) => [t, ...series.map(({ k }) => plot.data[k][i] ?? "")].join(","));
-  return [["t_s", ...series.map(({ s }) => cell(s.label))].join(","), ...rows, ""].join("\n");
+// A single-precision number in as few digits as tell it from all others.
+const single = (v) => {
+  if (v == null) return "";
+  if (Math.fround(v) !== v) return String(v);
+  for (let digits = 6; digits < 9; digits++) if (Math.fround(+v.toPrecision(digits)) === v) return String(+v.toPrecision(digits));
+  return String(+v.toPrecision(9));
 };
 
-// The ground is drawn under the picture, which has none.
-const pictureOf = (plot, done) => {
-  const from = plot.ctx.canvas;
-  const copy = element("canvas", { width: from.width, height: from.height });
-  const ctx = copy.getContext("2d");
-  ctx.fillStyle = colour("--surface");
-  ctx.fillRect(0, 0, copy.width, copy.height);
-  ctx.drawImage(from, 0, 0);
-  copy.toBlob(done);
+// Quotation marks as tables have them; a cell that could be taken for a formula begins with an apostrophe.
+const cell = (text) => `"${String(text).replace(/^[=+\-@\t\r]/, "'$&").replaceAll('"', '""')}"`;
+const withUnit = (plot, { label, unit = plot.unit }) => (unit ? `${label} in ${unit}` : label);
+const csvOf = (plot) => {
+  const series = shownSeries(plot);
+  const rows = plot.data[0].map((t, i) => [t, ...series.map(({ k }) => single(plot.data[k][i]))].join(","));
+  return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, s)))].join(","), ...rows, ""].join("\n");
 };
 
 const TABLE_ROWS = 13;
+const TABLE_SERIES = 12;
 const tableOf = (plot) => {
-  const series = shownSeries(plot).slice(0, 12);
+  const all = shownSeries(plot);
+  const series = all.slice(0, TABLE_SERIES);
   const times = plot.data[0];
   const rows = [...new Set(Array.from({ length: TABLE_ROWS }, (_, k) => Math.round((k * (times.length - 1)) / (TABLE_ROWS - 1))))];
   const line = (tag, texts) => element("tr", {}, ...texts.map((textContent) => element(tag, { textContent })));
-  return element(
+  const table = element(
     "table",
     { className: "numbers" },
-    element("thead", {}, line("th", ["t in s", ...series.map(({ s }) => s.label)])),
+    element("thead", {}, line("th", ["t in s", ...series.map(({ s }) => withUnit(plot, s))])),
     element("tbody", {}, ...rows.map((i) => line("td", [number(times[i]), ...series.map(({ k }) => number(plot.data[k][i]))]))),
   );
+  const more = all.length > series.length ? [element("p", { className: "note", textContent: `The first ${series.length} of ${all.length} columns; hide agents to see others. The CSV has all.` })] : [];
+  return [table, ...more];
+};
+// Tables that are open say what is drawn.
+const refreshTables = () => document.querySelectorAll(".exports details[open]").forEach((table) => table.dispatchEvent(new Event("toggle")));
+
+// The parts of a heading, each told apart from the next.
+const titleOf = (card) => {
+  const heading = card.querySelector("h3");
+  return [...heading.childNodes].map((part) => part.textContent.trim()).filter(Boolean).join(", ");
 };
 
 // Buttons and a table under a plot; called whenever it is drawn anew.
 const offer = (card, plot) => {
   card.querySelector(".exports")?.remove();
-  const title = card.querySelector("h3").textContent;
+  const title = titleOf(card);
   const canvas = card.querySelector(".canvas");
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `${title}: ${shownSeries(plot).length} curves over ${number(whole[1])} s; their numbers are in the table below`);
@@ -56,14 +66,14 @@ const offer = (card, plot) => {
   const table = element("details", {}, element("summary", { textContent: "Table" }));
   table.ontoggle = () => {
     table.querySelector(".scroll")?.remove();
-    if (table.open) table.append(element("div", { className: "scroll" }, tableOf(plot)));
+    if (table.open) table.append(element("div", { className: "scroll" }, ...tableOf(plot)));
   };
   card.append(
     element(
       "div",
       { className: "exports" },
       table,
-      button("PNG", `Save ${title} as a picture`, () => pictureOf(plot, (blob) => blob && save(`${name}.png`, blob))),
+      button("PNG", `Save ${title} as a picture`, () => pictureOf(plot, title).toBlob((blob) => blob && save(`${name}.png`, blob))),
       button("SVG", `Save ${title} as a drawing`, () => save(`${name}.svg`, new Blob([svgOf(plot, title)], { type: "image/svg+xml" }))),
       button("CSV", `Save ${title} as a table`, () => save(`${name}.csv`, new Blob([csvOf(plot)], { type: "text/csv" }))),
     ),

@@ -1,12 +1,36 @@
 // The graph at one instant: who hears whom, how old what is heard is, and who is silent.
 
 const spans = index.gantt.spans;
+// Where the graph changes very often it is on the page until then.
+const drawnUntil = index.gantt.drawn_until_s ?? Infinity;
 const vertices = bodies.length;
-const ageAt = (delay, time) => (delay === null ? null : data.at("delays", delay, data.place("delays", time)));
-const oldest = Math.max(1e-12, ...index.delays.flatMap((d) => data.values("delays", d.series).filter((v) => v !== null)));
+
+// What is known of the age of what is heard: what it is, or between what it is where a delay changes too often to be on the page.
+const ageOf = (from, to, delay, time) => {
+  const exact = packetAge(from, to, time);
+  if (exact !== null) return [exact, exact];
+  if (delay === null) return null;
+  const { series, band } = index.delays[delay];
+  const { row, part } = data.place("delays", time);
+  if (!band) return Array(2).fill(data.at("delays", series, { row, part }));
+  // The greatest and the least around each time stand in turn.
+  const first = Math.max(0, Math.min(row, index.grids.delays - 2));
+  const pair = [0, 1].map((k) => data.at("delays", series, { row: Math.min(first + k, index.grids.delays - 1), part: 0 }));
+  return [Math.min(...pair), Math.max(...pair)];
+};
+const [youngest, oldest] = (() => {
+  let [low, high] = [Infinity, 0];
+  const take = (age) => age !== null && ([low, high] = [Math.min(low, age), Math.max(high, age)]);
+  for (const { series } of index.delays) data.values("delays", series).forEach(take);
+  packetAges().forEach(take);
+  return [low, high];
+})();
+// From 0 for the youngest that is ever heard to 1 for the oldest; what never changes is not stale.
+const staleness = (age) => (oldest - youngest > 1e-6 * oldest ? Math.min(1, Math.max(0, (age - youngest) / (oldest - youngest))) : 0);
 
 // Messages on their way are left out that are not under way for `pace`, s.
 const heardAt = (time, pace = 0) => {
+  if (time > drawnUntil) return { graph: null, edges: [] };
   let [low, high] = [0, spans.length - 1];
   while (low < high) {
     const half = (low + high + 1) >> 1;
@@ -15,78 +39,139 @@ const heardAt = (time, pace = 0) => {
   }
   const graph = spans[low]?.[2] ?? 0;
   const edges = (scene.graphs[graph] ?? []).filter(([from, to]) => from < vertices && to < vertices).map(([from, to, delay]) => {
-    const age = ageAt(delay, time);
-    return { from, to, age, share: age === null ? 0 : Math.min(1, age / oldest), flights: flightsOf({ from, to, delay }, time, pace) };
+    const ages = ageOf(from, to, delay, time);
+    const isExact = ages !== null && ages[0] === ages[1];
+    return {
+      from, to,
+      age: isExact ? ages[0] : null,
+      between: ages !== null && !isExact ? ages : null,
+      share: ages === null ? 0 : staleness(0.5 * (ages[0] + ages[1])),
+      flights: flightsOf({ from, to, delay }, time, pace),
+    };
   });
   return { graph, edges };
 };
 
+// Of very many edges so many are drawn, spread evenly.
+const MOST_ARROWS = 2000;
+// Multiples of the golden ratio leave nobody out, in whatever order edges come.
+const drawnOf = (edges) => {
+  if (edges.length <= MOST_ARROWS) return edges;
+  const part = (k) => (k * 0.6180339887498949) % 1;
+  const order = edges.map((_, k) => k).sort((a, b) => part(a) - part(b));
+  const drawn = new Set(order.slice(0, MOST_ARROWS));
+  return edges.filter((_, k) => drawn.has(k));
+};
+
 const someNames = (list) => (list.length > 4 ? `${list.slice(0, 3).join(", ")} and ${list.length - 3} more` : list.join(", "));
-const graphWords = ({ edges }) => {
+const ageWords = ({ age, between }) => (between ? `between ${number(between[0], 3)} and ${number(between[1], 3)} s` : `${number(age, 3)} s`);
+const graphWords = ({ graph, edges }) => {
+  if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
+  if (graph === null) return `Unknown: the graph changes very often, and is not drawn after ${number(drawnUntil)} s.`;
   const name = (v) => bodies[v].name;
   const [speak, hear] = [new Set(edges.map((e) => e.from)), new Set(edges.map((e) => e.to))];
   const everyone = [...bodies.keys()];
-  const silent = everyone.filter((v) => !speak.has(v)).map(name);
-  const deaf = everyone.filter((v) => !hear.has(v) && !bodies[v].leads).map(name);
-  const late = edges.reduce((most, e) => (e.age !== null && e.age > (most?.age ?? 1e-6) ? e : most), null);
-  const count = edges.length === 1 ? "1 edge" : `${edges.length} edges`;
-  if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
+  const count = scene.edge_counts[graph] ?? edges.length;
+  // Nothing is said of all where not all are on the page.
+  const whole = count === edges.length;
+  const silent = whole ? everyone.filter((v) => !speak.has(v)).map(name) : [];
+  const deaf = whole ? everyone.filter((v) => !hear.has(v) && !bodies[v].leads).map(name) : [];
+  const most = (e) => e?.between?.[1] ?? e?.age ?? 1e-6;
+  const late = edges.reduce((before, e) => (most(e) > most(before) ? e : before), null);
+  const unknown = edges.filter((e) => e.age === null && e.between === null).length;
+  const drawn = Math.min(edges.length, MOST_ARROWS);
   return [
-    `${count}.`,
-    ...(late ? [`Oldest message heard: ${number(late.age, 3)} s (${name(late.from)} → ${name(late.to)}).`] : []),
+    drawn < count ? `${drawn} of ${count} edges drawn.` : count === 1 ? "1 edge." : `${count} edges.`,
+    ...(late ? [`Oldest message heard: ${ageWords(late)} (${name(late.from)} → ${name(late.to)}).`] : []),
+    ...(unknown ? [`How old it is on ${unknown} edges is not on this page.`] : []),
     ...(silent.length ? [`No agent hears ${someNames(silent)}.`] : []),
     ...(deaf.length ? [`Nothing is heard by ${someNames(deaf)}.`] : []),
     ...(flightWords ? [flightWords] : []),
   ].join(" ");
 };
 
-// Names around a circle, with an arrow for every edge in force.
-const GRAPH = { width: 400, height: 190 };
+// Names around a circle, with an arrow for every edge in force. It is as large as its place, so that names have the size of the page's.
+const GRAPH = { width: 400, height: 190, font: '12px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif' };
 const svg = (tag, attributes, ...children) => {
   const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) e.setAttribute(name, String(value));
   e.append(...children);
   return e;
 };
-const graphPlaces = bodies.map((_, v) => {
-  const angle = 2 * Math.PI * (v / Math.max(1, vertices) - 0.25);
-  const [rx, ry] = vertices === 1 ? [0, 0] : vertices > 24 ? [84, 84] : [118, 68];
-  return { x: 200 + rx * Math.cos(angle), y: 95 + ry * Math.sin(angle), side: Math.cos(angle), top: Math.sin(angle) };
-});
-const graphIn = (place) => {
-  const picture = svg("svg", { viewBox: `0 0 ${GRAPH.width} ${GRAPH.height}`, role: "img", class: "now" });
-  const [arrows, dots] = [svg("g", {}), svg("g", {})];
-  const r = vertices > 24 ? 2.5 : 7;
-  const nodes = bodies.map((body, v) => {
-    const { x, y, side, top } = graphPlaces[v];
-    const group = svg("g", { class: `node a${v}` }, svg("title", {}, body.name), svg("circle", { cx: x, cy: y, r }));
-    if (body.leads) group.append(svg("circle", { cx: x, cy: y, r: r + 3, class: "lead" }));
-    if (vertices <= 24) {
-      const anchor = Math.abs(side) < 0.3 ? "middle" : side > 0 ? "start" : "end";
-      const short = body.name.length > 14 ? `${body.name.slice(0, 13)}…` : body.name;
-      const dx = anchor === "middle" ? 0 : 12 * Math.sign(side);
-      const dy = anchor === "middle" ? (top > 0 ? 21 : -12) : 4;
-      group.append(svg("text", { x: x + dx, y: y + dy, "text-anchor": anchor }, leading(short, body.leads)));
-    }
-    return group;
+const wideIn = (() => {
+  const measure = document.createElement("canvas").getContext("2d");
+  return (text) => ((measure.font = GRAPH.font), measure.measureText(text).width);
+})();
+const angleOf = (v) => 2 * Math.PI * (v / Math.max(1, vertices) - 0.25);
+// Where everybody stands in a picture of a size, and what is written beside: names as long as there is room, none over another.
+const graphLayout = (width, height) => {
+  const named = vertices <= 24;
+  const longest = Math.max(30, 0.5 * width - 60);
+  const shortened = (text) => {
+    let letters = [...text];
+    while (letters.length > 1 && wideIn(`${letters.join("")}…`) > longest) letters = letters.slice(0, -1);
+    return letters.length < [...text].length ? `${letters.join("")}…` : text;
+  };
+  const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
+  const texts = bodies.map((body) => (named ? shortened(leading(short(body.name), body.leads)) : ""));
+  let rx = named ? 1.75 * (0.5 * height - 28) : 0.5 * height - 8;
+  bodies.forEach((_, v) => {
+    const side = Math.abs(Math.cos(angleOf(v)));
+    if (named && side >= 0.3) rx = Math.min(rx, (0.5 * width - 16 - wideIn(texts[v])) / side);
   });
-  picture.append(arrows, dots, ...nodes);
+  const ry = vertices === 1 ? 0 : named ? 0.5 * height - 28 : 0.5 * height - 8;
+  rx = vertices === 1 ? 0 : Math.max(24, Math.min(rx, 0.5 * width - 12));
+  const taken = [];
+  return bodies.map((_, v) => {
+    const [side, top] = [Math.cos(angleOf(v)), Math.sin(angleOf(v))];
+    const place = { x: 0.5 * width + rx * side, y: 0.5 * height + ry * top, text: null };
+    if (!named) return place;
+    const anchor = Math.abs(side) < 0.3 ? "middle" : side > 0 ? "start" : "end";
+    const wide = wideIn(texts[v]);
+    const at = { x: place.x + (anchor === "middle" ? 0 : 12 * Math.sign(side)), y: place.y + (anchor === "middle" ? (top > 0 ? 21 : -12) : 4) };
+    const left = at.x - { middle: 0.5, start: 0, end: 1 }[anchor] * wide;
+    const box = [left, at.y - 10, left + wide, at.y + 3];
+    if (taken.some((b) => b[0] < box[2] && box[0] < b[2] && b[1] < box[3] && box[1] < b[3])) return place;
+    taken.push(box);
+    return { ...place, text: { ...at, anchor, said: texts[v] } };
+  });
+};
+const graphIn = (place) => {
+  const picture = svg("svg", { role: "img", class: "now" });
+  const [arrows, dots, nodes] = [svg("g", {}), svg("g", {}), svg("g", {})];
+  const r = vertices > 24 ? 2.5 : 7;
+  picture.append(arrows, dots, nodes);
   place.append(picture);
-  let shown = null;
+  let [places, shown, last] = [[], undefined, null];
   const along = (from, to) => {
-    const [a, b] = [graphPlaces[from], graphPlaces[to]];
+    const [a, b] = [places[from], places[to]];
     const far = Math.hypot(b.x - a.x, b.y - a.y) || 1;
     const [ux, uy] = [(b.x - a.x) / far, (b.y - a.y) / far];
     const p = { x: a.x + ux * (r + 2) - 2.4 * uy, y: a.y + uy * (r + 2) + 2.4 * ux };
     const q = { x: b.x - ux * (r + 3) - 2.4 * uy, y: b.y - uy * (r + 3) + 2.4 * ux };
     return { p, q, ux, uy, far };
   };
-  return ({ graph, edges }) => {
+  const laidOut = () => {
+    const [width, height] = [place.clientWidth || GRAPH.width, place.clientHeight || GRAPH.height];
+    picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    places = graphLayout(width, height);
+    shown = undefined;
+    nodes.replaceChildren(...bodies.map((body, v) => {
+      const { x, y, text } = places[v];
+      const group = svg("g", { class: `node a${v}` }, svg("title", {}, leading(body.name, body.leads)), svg("circle", { cx: x, cy: y, r }));
+      if (body.leads) group.append(svg("circle", { cx: x, cy: y, r: r + 3, class: "lead" }));
+      if (text) group.append(svg("text", { x: text.x, y: text.y, "text-anchor": text.anchor }, text.said));
+      return group;
+    }));
+  };
+  const draw = ({ graph, edges }) => {
+    last = { graph, edges };
     // Ages change all the time, arrows only with the graph.
     picture.setAttribute("aria-label", `The graph: ${graphWords({ graph, edges })}`);
+    picture.classList.toggle("unknown", graph === null);
     if (shown !== graph) {
       shown = graph;
-      arrows.replaceChildren(...edges.slice(0, 2000).map(({ from, to }) => {
+      arrows.replaceChildren(...drawnOf(edges).map(({ from, to }) => {
         const { p, q, ux, uy, far } = along(from, to);
         const head = Math.min(7, 0.4 * far);
         const points = [[q.x, q.y], [q.x - head * ux - 0.4 * head * uy, q.y - head * uy + 0.4 * head * ux], [q.x - head * ux + 0.4 * head * uy, q.y - head * uy - 0.4 * head * ux]];
@@ -99,6 +184,10 @@ const graphIn = (place) => {
     });
     dots.replaceChildren(...flying.map(({ from, lost, share, x, y }) =>
       svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: 3, class: `flight a${from}${lost ? " lost" : ""}`, opacity: lost ? (1 - share).toFixed(2) : 1 })));
-    if (edges.length <= 200) edges.forEach(({ share }, k) => arrows.children[k]?.setAttribute("opacity", (1 - 0.6 * share).toFixed(2)));
+    if (edges.length <= 200) edges.forEach(({ share }, k) => arrows.children[k]?.setAttribute("opacity", (1 - 0.3 * share).toFixed(2)));
   };
+  laidOut();
+  const again = () => (laidOut(), last && draw(last));
+  new ResizeObserver(again).observe(place);
+  return Object.assign(draw, { again });
 };

@@ -12,12 +12,19 @@ const fill = (card, height) => {
   canvas.replaceChildren();
   card.querySelector(".key")?.remove();
   card.querySelector(".exports")?.remove();
-  const empty = (why) => canvas.replaceChildren(element("p", { className: "none", textContent: why || "nothing was recorded" }));
+  // A card that has nothing to show stands where something is missing, and nowhere else.
+  const empty = (why) => {
+    canvas.replaceChildren(element("p", { className: "none", textContent: why || "nothing was recorded" }));
+    card.hidden = !card.closest("#stage") && !why;
+  };
+  card.hidden = false;
 
   if (kind === "gantt") {
     if (index.gantt.rows.length === 0) return empty("no agent hears another");
     if (index.gantt.by_receiver) document.getElementById("gantt-by").textContent = "per receiver; the stronger, the more agents it hears";
     mine.plot = drawPlot(canvas, ganttCard());
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", `${titleOf(card)}: ${index.gantt.rows.length} rows over ${number(whole[1])} s${notDrawn && `, ${notDrawn}`}; the table of graphs is above`);
     return;
   }
   if (kind === "plane") {
@@ -38,23 +45,35 @@ const fill = (card, height) => {
   const unit = card.querySelector(".unit") ?? card.querySelector("h3").appendChild(element("span", { className: "unit" }));
   unit.textContent = built.unit ? ` ${built.unit}` : "";
   const times = data.t(built.grid ?? "main");
-  if (built.series.length === 0 || times.length === 0) return empty(card.dataset.empty);
+  if (built.series.length === 0 || times.length === 0) return empty(card.dataset.empty || (card.dataset.plot === "disagreement" && "nothing was recorded"));
   if (built.series.every((s) => s.values.every((v) => v === null))) return empty("no value can be drawn: all are zero or not finite");
+  if (kind === "delay" && built.series.every((s) => s.values.every((v) => v === 0))) return empty();
   mine.series = built.series;
   const far = built.log ? null : outliers(built.series);
-  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 ? 176 : undefined), within: far?.usual });
+  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 && !isPrinting() ? stagePlotHeight() : undefined), within: far?.usual });
+  const lost = built.series.map(({ values }) => values.beyond_s ?? null).filter((t) => t !== null);
+  if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
-  if (built.key) card.append(key(built.series, mine.plot));
+  const banded = isBanded() && built.series.some((s) => QUANTILES.some(([, label]) => label === s.label));
+  if (banded) canvas.append(element("p", { className: "note", textContent: `${shownCurves()} agents, by quantiles at each time. Curves are drawn of up to ${MOST_CURVES}: hide others in the legend, or choose one beside the clock.` }));
+  if (built.key || banded) card.append(key(built.series, mine.plot));
   offer(card, mine.plot);
 };
 
-// Names of series that are not agents.
+const isPrinting = () => document.documentElement.classList.contains("printing");
+// Beside the picture there is less room in a low window.
+const stagePlotHeight = () => {
+  const room = innerHeight - document.getElementById("stage").getBoundingClientRect().top - scrollY;
+  return Math.round(Math.max(132, Math.min(176, room - 604)));
+};
+
+// Names of series that are not agents; what is dashed is named where its card does not say what dashes are.
 const key = (series, plot) => {
-  const named = series.filter((s) => !s.dash);
+  const named = series.filter((s) => !s.dash || s.keyed);
   const list = element("div", { className: "key" });
   for (const s of named.slice(0, 24)) {
     const line = element("i");
-    line.style.background = s.colour;
+    line.style.background = s.dash?.length ? `repeating-linear-gradient(90deg, ${s.colour} 0 5px, transparent 5px 8px)` : s.colour;
     list.append(element("span", {}, line, s.label));
   }
   if (named.length > 24) list.append(element("span", { textContent: `and ${named.length - 24} more` }));
@@ -76,18 +95,26 @@ const drawPicks = (card, spec, chosen) => {
       const mine = state.get(card);
       mine.picks[k] = value;
       fill(card);
+      // What was pressed is made anew; whoever goes by keys stays there.
+      place.querySelector(`select[data-pick="${k}"], [data-pick="${k}"][aria-pressed="true"]`)?.focus({ preventScroll: true });
     };
+    const name = `${titleOf(card)}: ${pick.name ?? "what is drawn"}`;
     const letters = options.reduce((sum, [, name]) => sum + name.length + 3, 0);
     if (letters <= 34) {
       const group = element("div", { className: "buttons" });
+      group.setAttribute("role", "group");
+      group.setAttribute("aria-label", name);
       for (const [value, name] of options) {
         const button = element("button", { type: "button", textContent: name, onclick: () => choose(value) });
         button.setAttribute("aria-pressed", String(value === picks[k]));
+        button.dataset.pick = String(k);
         group.append(button);
       }
       place.append(group);
     } else {
       const select = element("select", { onchange: () => choose(select.value) });
+      select.dataset.pick = String(k);
+      select.setAttribute("aria-label", name);
       for (const [value, name] of options) select.append(element("option", { value, textContent: name, selected: value === picks[k] }));
       place.append(select);
     }
@@ -112,9 +139,9 @@ const fillAll = () =>
 
 // The legend switches agents on and off in every plot; a double click leaves one alone.
 const legend = document.getElementById("legend");
-const chips = agents.map((agent, i) => {
+const chips = everybody.map((name, i) => {
   const dot = element("span", { className: `dot a${i}` });
-  const chip = element("button", { type: "button", title: "Click to hide or show, double-click to see this one alone" }, dot, agent.name);
+  const chip = element("button", { type: "button", title: "Click to hide or show, double-click to see this one alone" }, dot, name);
   chip.onclick = () => {
     shownAgents.has(i) ? shownAgents.delete(i) : shownAgents.add(i);
     showAgents();
@@ -126,12 +153,31 @@ const chips = agents.map((agent, i) => {
   };
   return chip;
 });
-const everyone = element("button", { type: "button", className: "all", textContent: "all", onclick: () => (agents.forEach((_, i) => shownAgents.add(i)), showAgents()) });
-legend.append(...chips, ...(agents.length > 1 ? [everyone] : []));
+const everyone = element("button", { type: "button", className: "all", textContent: "all", onclick: () => (everybody.forEach((_, i) => shownAgents.add(i)), showAgents()) });
+// Of many those whose names hold some letters.
+const filter = element("input", { type: "search", placeholder: "filter agents" });
+filter.setAttribute("aria-label", "Agents whose names hold these letters");
+const matching = () => [...everybody.keys()].filter((i) => everybody[i].toLowerCase().includes(filter.value.trim().toLowerCase()));
+const only = element("button", { type: "button", className: "all", textContent: "only these", hidden: true });
+only.onclick = () => {
+  shownAgents.clear();
+  matching().forEach((i) => shownAgents.add(i));
+  showAgents();
+};
+filter.oninput = () => {
+  const found = new Set(matching());
+  chips.forEach((chip, i) => (chip.hidden = !found.has(i)));
+  only.hidden = found.size === 0 || found.size === everybody.length;
+};
+if (agents.length > MOST_CURVES) legend.append(filter, only, everyone, ...chips);
+else legend.append(...chips, ...(everybody.length > 1 ? [everyone] : []));
+// Quantiles are those of the agents that are shown.
+const regroup = () => agents.length > MOST_CURVES && fillAll();
 const showAgents = () => {
   stageAsk();
   chips.forEach((chip, i) => chip.setAttribute("aria-pressed", String(shownAgents.has(i))));
-  everyone.hidden = shownAgents.size === agents.length;
+  everyone.hidden = shownAgents.size === everybody.length;
+  regroup();
   for (const { plot, series } of state.values()) {
     if (plot?.curves) plot.redraw();
     if (!plot || !series) continue;
@@ -140,6 +186,7 @@ const showAgents = () => {
       plot.setSeries(k + 1, { show: shownAgents.has(s.agent) });
     });
   }
+  refreshTables();
 };
 
 // One joint for all cards that have the choice.
@@ -148,10 +195,12 @@ for (const j of joints) joint.append(element("option", { value: String(j.axis), 
 document.getElementById("joint-label").hidden = joints.length < 2;
 joint.onchange = () => {
   for (const card of all) {
-    const spec = cards[card.dataset.plot];
-    const k = spec?.picks.indexOf(jointPick) ?? -1;
-    if (k < 0) continue;
-    state.get(card).picks[k] = joint.value;
+    const picks = cards[card.dataset.plot]?.picks ?? [];
+    const k = picks.findIndex(({ id }) => id === "joint");
+    const mine = state.get(card);
+    // A card that has nothing of this joint keeps its own.
+    if (k < 0 || !picks[k].options(mine.picks).some(([value]) => value === joint.value)) continue;
+    mine.picks[k] = joint.value;
     fill(card);
   }
 };
@@ -165,6 +214,7 @@ lines.onchange = () => {
 document.getElementById("reset").onclick = () => zoomTo(null);
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", fillAll);
+// The layout of the print is there before anything is measured, and all is drawn before the page is printed.
 const printing = (on) => {
   document.documentElement.classList.toggle("printing", on);
   fillAll();
@@ -174,7 +224,7 @@ addEventListener("afterprint", () => printing(false));
 
 let width = innerWidth;
 addEventListener("resize", () => {
-  if (innerWidth === width) return; // a phone's address bar
+  if (innerWidth === width || isPrinting()) return; // a phone's address bar
   width = innerWidth;
   for (const card of all) {
     const plot = state.get(card)?.plot;
@@ -182,6 +232,7 @@ addEventListener("resize", () => {
   }
 });
 
-fillAll();
+if (agents.length <= MOST_CURVES) fillAll();
 showAgents();
+if (data.t("main").length === 0) document.querySelector("#signals .grid").append(element("p", { className: "note", textContent: "Nothing was recorded." }));
 document.documentElement.dataset.ready = String(plots.size);

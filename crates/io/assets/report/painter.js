@@ -26,7 +26,7 @@ const lookingFrom = (width, height, { middle, points, extent }, { zoom, ...angle
   const focal = 0.5 * height / Math.tan(0.5 * FIELD);
   // A point at a, b to the side and c towards the camera fits where focal·|a| ≤ room·(distance − c).
   const [wide, high] = [Math.max(40, 0.5 * width - 46), Math.max(40, 0.5 * height - 34)];
-  let distance = 1e-6;
+  let distance = 1e-6 * extent;
   for (const p of points) {
     const d = minusVector(p, middle);
     const nearer = dot(d, back);
@@ -73,7 +73,7 @@ const floorGrid = (() => {
 const inkOf = (colours, item) => (item.ink ? colours.ink : colours.agents[item.colour]);
 const sceneColours = () => ({
   ink: colour("--ink"), muted: colour("--muted"), surface: colour("--surface"), grid: colour("--line"), soft: colour("--soft"), accent: colour("--accent"),
-  agents: bodies.map((b) => (b.vertex < agents.length ? colour(`--a${b.vertex}`) : colour("--ink"))),
+  agents: [...bodies.map((b) => (b.vertex < agents.length ? colour(`--a${b.vertex}`) : colour("--ink"))), colour("--muted")],
 });
 
 const trace = (ctx, see, points) => {
@@ -173,7 +173,7 @@ const drawEdges = (ctx, see, frame, colours, heard) => {
     const inset = Math.min(13, 0.3 * far);
     const [p, q] = [{ x: a.x + inset * ux - 3 * uy, y: a.y + inset * uy + 3 * ux }, { x: b.x - inset * ux - 3 * uy, y: b.y - inset * uy + 3 * ux }];
     const c = { x: 0.5 * (a.x + b.x) - bend * uy, y: 0.5 * (a.y + b.y) + bend * ux };
-    ctx.globalAlpha = many ? 0.12 : 0.95 - 0.6 * share;
+    ctx.globalAlpha = many ? 0.12 : 0.95 - 0.25 * share;
     ctx.strokeStyle = ctx.fillStyle = colours.agents[from];
     ctx.lineWidth = many ? 1 : 1.8;
     ctx.beginPath();

@@ -20,7 +20,7 @@ const spacePaths = (() => {
     const rows = Array.from({ length: count }, (_, k) => (count < 2 ? 0 : Math.round((k * (sceneTimes.length - 1)) / (count - 1))));
     const along = (of, body) => rows.map((row) => of(body, { row, part: 0 }));
     const curves = spatial.flatMap((body) => {
-      const agent = body.vertex < agents.length ? body.vertex : null;
+      const agent = body.vertex;
       const label = leading(body.name, body.leads);
       const wanted = body.target.length > 0 && body.kind !== "spacecraft" ? [{ body, agent, label: `${label}, wanted`, dash: [4, 3], wanted: true, points: along(ownTarget, body) }] : [];
       return [...wanted, { body, agent, label, dash: body.motion ? [8, 3] : [], points: along(ownPoint, body) }];
@@ -49,10 +49,24 @@ if (spatial.length > 0 && sceneTimes.length > 0) {
   document.querySelector('[data-plot="plane"]').after(card);
 }
 
+// Paths in a plane are looked at from the side from which they are seen best, and turned with the picture from there.
+const pathView = (() => {
+  let made = null;
+  return () => {
+    if (!made) {
+      const { low, high } = boxOf(spacePaths().curves.flatMap(({ points }) => points.filter(finite)));
+      const sizes = [0, 1, 2].map((k) => high[k] - low[k]);
+      const thin = sizes.indexOf(Math.min(...sizes));
+      made = sizes[thin] < 0.15 * Math.max(...sizes) ? [{ az: -14, el: 14 }, { az: -76, el: 14 }, { az: -90, el: 72 }][thin] : FIRST_VIEW;
+    }
+    return { az: made.az + camera.az - FIRST_VIEW.az, el: Math.min(90, Math.max(-20, made.el + camera.el - FIRST_VIEW.el)) };
+  };
+})();
+
 // A box around points, with walls behind them, as the camera of the picture looks at it.
 const pathBox = (points) => {
   const { low, high } = boxOf(points);
-  const extent = Math.max(1e-9, ...[0, 1, 2].map((k) => high[k] - low[k]));
+  const extent = Math.max(...[0, 1, 2].map((k) => high[k] - low[k])) || 1;
   const middle = [0, 1, 2].map((k) => 0.5 * (low[k] + high[k]));
   const half = [0, 1, 2].map((k) => Math.max(0.53 * (high[k] - low[k]), 0.08 * extent));
   const [from, to] = [minusVector(middle, half), add(middle, half)];
@@ -61,7 +75,7 @@ const pathBox = (points) => {
 };
 // What is projected is as large as there is room for it and its labels.
 const pathLooking = ({ middle, corners, extent }, width, height, head) => {
-  const see = lookingFrom(width, height, { middle, points: corners, extent }, { ...camera, zoom: 1 });
+  const see = lookingFrom(width, height, { middle, points: corners, extent }, { ...pathView(), zoom: 1 });
   const seen = corners.map(see.project);
   const [[left, right], [top, bottom]] = ["x", "y"].map((side) => [Math.min(...seen.map((p) => p[side])), Math.max(...seen.map((p) => p[side]))]);
   const k = Math.min(Math.max(60, width - 124) / (right - left), Math.max(60, height - 64) / (bottom - top));
@@ -256,7 +270,7 @@ const drawPaths = (target, height) => {
     height,
     data: [times, ...curves.flatMap((c) => [0, 1, 2].map((k) => column(c, k)))],
     get series() {
-      return [{}, ...curves.flatMap((c) => ["x", "y", "z"].map((axis) => ({ label: `${c.label}, ${axis}`, show: isShown(c), agent: c.agent })))];
+      return [{}, ...curves.flatMap((c) => ["x", "y", "z"].map((axis) => ({ label: `${c.label}, ${axis}`, unit: pathUnit, show: isShown(c), agent: c.agent })))];
     },
     curves: () => curves.filter(isShown).length,
     get width() {
@@ -273,6 +287,7 @@ const drawPaths = (target, height) => {
     destroy: () => (watcher.disconnect(), frame.remove()),
   };
   redraw();
+  if (isPrinting()) printedOn(frame, size, (pen) => paint(pen), dotsAt);
   clock(whole[0]);
   plots.add(plot);
   return plot;

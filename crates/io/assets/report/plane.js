@@ -31,7 +31,7 @@ const usualPlane = (() => {
 
 const planeOptions = quantities.map((q, k) => [String(k), q.unit ? `${q.name} in ${q.unit}` : q.name]);
 const planeSpec = {
-  picks: [0, 1].map((k) => ({ id: `plane-${k}`, options: planeOptions, first: () => String(Math.max(0, quantities.indexOf(usualPlane[k]))) })),
+  picks: [0, 1].map((k) => ({ id: `plane-${k}`, name: ["across", "upwards"][k], options: planeOptions, first: () => String(Math.max(0, quantities.indexOf(usualPlane[k]))) })),
 };
 
 const spread = (ranges) => [Math.min(...ranges.map(([low]) => low)), Math.max(...ranges.map(([, high]) => high))];
@@ -58,6 +58,16 @@ const preparedCanvas = (canvas, ctx, size) => {
   return ctx;
 };
 
+// Printed as lines, since of two canvases over each other a print may have the upper one alone.
+const printedOn = (frame, { width, height }, paint, dotsAt) => {
+  const pen = svgPen(width, height, measuring());
+  paint(pen);
+  dotsAt(pen, document.getElementById("stage").time());
+  const picture = new DOMParser().parseFromString(pen.document(""), "image/svg+xml").documentElement;
+  picture.style.display = "block";
+  frame.replaceChildren(document.adoptNode(picture));
+};
+
 const drawPlane = (target, [acrossId, upId], height) => {
   const [across, up] = [quantities[+acrossId], quantities[+upId]];
   const times = data.t("main");
@@ -68,7 +78,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     const wanted = across.wanted[i] == null || up.wanted[i] == null ? [] : [curve(`${agent.name}, wanted`, own, across.wanted[i], up.wanted[i], { agent: i, dash: [4, 3] })];
     return [...wanted, ...made];
   });
-  if (across.leader != null && up.leader != null) curves.push(curve(leading(index.leader.name, true), colour("--ink"), across.leader, up.leader, { dash: [8, 3] }));
+  if (across.leader != null && up.leader != null) curves.push(curve(everybody[agents.length], colour("--ink"), across.leader, up.leader, { agent: agents.length, dash: [8, 3] }));
   const isShown = ({ agent }) => agent == null || shownAgents.has(agent);
   const canvases = [element("canvas", {}), element("canvas", { className: "over" })];
   const frame = element("div", { className: "plane" }, ...canvases);
@@ -199,7 +209,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     height,
     data: [times, ...curves.flatMap((c) => [c.x, c.y])],
     get series() {
-      return [{}, ...curves.flatMap((c) => [across, up].map((q) => ({ label: `${c.label}, ${q.name}`, show: isShown(c), agent: c.agent })))];
+      return [{}, ...curves.flatMap((c) => [across, up].map((q) => ({ label: `${c.label}, ${q.name}`, unit: q.unit, show: isShown(c), agent: c.agent })))];
     },
     curves: () => curves.filter(isShown).length,
     get width() {
@@ -216,6 +226,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     destroy: () => frame.remove(),
   };
   redraw();
+  if (isPrinting()) printedOn(frame, size, (pen) => paint(pen, size), dotsAt);
   plot.clock(whole[0]);
   plots.add(plot);
   return plot;

@@ -2,14 +2,18 @@
 
 const plots = new Set();
 const view = { zoom: null, breakPoints: true };
-const whole = [0, index.until_s > 0 ? index.until_s : 1];
+const whole = [0, Math.max(0, index.until_s)];
+// A run that ended where it began has one instant; an axis needs room around it.
+const axisOf = ([min, max]) => (max > min ? [min, max] : [min - 1, max + 1]);
 
 const zoomTo = (range) => {
   view.zoom = range;
   document.getElementById("reset").disabled = range === null;
-  const [min, max] = range ?? whole;
+  const [min, max] = axisOf(range ?? whole);
   for (const plot of plots) plot.setScale("x", { min, max });
 };
+// Times on an axis; of one instant nothing but that.
+const timeTick = (t, step) => (whole[1] > 0 || t === 0 ? `${tick(t, step)} s` : "");
 
 const axisFont = '11px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
 
@@ -21,6 +25,11 @@ const labelRoom = (u, labels) => {
   u.ctx.restore();
   return Math.max(62, Math.ceil(widest) + 14);
 };
+
+const widthOf = (() => {
+  const ctx = document.createElement("canvas").getContext("2d");
+  return (text) => ((ctx.font = axisFont), ctx.measureText(text).width);
+})();
 
 const decades = (min, max) => {
   const low = Math.ceil(Math.log10(min) - 1e-9);
@@ -157,6 +166,19 @@ const readout = (log) => {
   return { hooks: { init: [(u) => u.over.append(box)], setCursor: [update] } };
 };
 
+// How fast time may pass: as the page offers it, and where none of that suits the length of a run, also what does. A long run plays in about half a
+// minute, whoever does not choose.
+const fitRates = (rate, end) => {
+  const suits = end > 0 ? 10 ** Math.round(Math.log10(end / 20)) : 1;
+  if (suits < 0.1 || suits > 20) {
+    for (const k of [0.2, 1, 5]) rate.append(element("option", { value: String(+(k * suits).toPrecision(3)), textContent: `${number(k * suits, 3)} ×` }));
+    [...rate.options].sort((a, b) => a.value - b.value).forEach((option) => rate.append(option));
+  }
+  const all = [...rate.options].map(({ value }) => value);
+  const least = suits < 0.1 ? 0 : 1;
+  rate.value = all.find((r) => Number(r) >= least && end / Number(r) <= 30) ?? all.at(-1);
+};
+
 // A line at the time of the clock; whoever points at a plot sets the clock.
 let stageGo = () => {};
 let stageAsk = () => {};
@@ -182,13 +204,13 @@ const clockLine = () => {
 };
 
 // Draws `series` = [{label, colour, dash, width, values}] over `times` into `target`.
-const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null }) => {
+const drawPlot = (target, { times, series, log = false, lines = [], height, y = {}, draw = [], cursor = true, within = null, unit = "" }) => {
   const besides = [(u) => drawLines(u, lines), ...draw];
   const axis = { stroke: colour("--muted"), font: axisFont, ticks: { show: false }, grid: { stroke: colour("--grid"), width: 1 } };
   const options = {
     width: Math.max(120, target.clientWidth),
     height: height ?? (innerWidth < 640 ? 220 : 270),
-    padding: [10, 20, 0, 0],
+    padding: [10, Math.max(20, 3 + 0.5 * widthOf(timeTick(whole[1], 0.2 * whole[1]))), 0, 0],
     legend: { show: false },
     focus: { alpha: 0.25 },
     cursor: {
@@ -199,9 +221,9 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
       bind: { dblclick: () => () => (zoomTo(null), null) },
       sync: { key: "run", scales: ["x", null], filters: { pub: (type) => type === "mousemove" || type === "mouseleave" } },
     },
-    scales: { x: { time: false, range: () => view.zoom ?? whole }, y: { distr: log ? 3 : 1, range: log ? logRange : within ? rangeWithin(within) : linearRange, ...y.scale } },
+    scales: { x: { time: false, range: () => axisOf(view.zoom ?? whole) }, y: { distr: log ? 3 : 1, range: log ? logRange : within ? rangeWithin(within) : linearRange, ...y.scale } },
     axes: [
-      { ...axis, size: 30, gap: 6, space: 70, values: (u, splits, a, s, step) => splits.map((v) => `${tick(v, step)} s`) },
+      { ...axis, size: 30, gap: 6, space: 70, values: (u, splits, a, s, step) => splits.map((v) => timeTick(v, step)) },
       {
         ...axis,
         size: labelRoom,
@@ -242,7 +264,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
     plugins: [...(cursor ? [readout(log)] : []), clockLine()],
   };
   const plot = new uPlot(options, [times, ...series.map((s) => s.values)], target);
-  plot.besides = besides;
+  Object.assign(plot, { besides, unit });
   plots.add(plot);
   return plot;
 };

@@ -20,6 +20,28 @@ const bodies = (() => {
 })();
 const read = (columns, place) => columns.map((k) => data.at("scene", k, place));
 
+// The first row at which a number of a body is beyond single precision, or none at all; from there on it stands where it was, in grey.
+const lostRow = (() => {
+  const kept = new Map();
+  return (body) => {
+    if (!kept.has(body)) {
+      const rows = [...body.q, ...body.attitude].map((k) => data.values("scene", k).indexOf(null)).filter((row) => row >= 0);
+      kept.set(body, Math.min(Infinity, ...rows));
+    }
+    return kept.get(body);
+  };
+})();
+const lastPlace = (body, place) => {
+  const lost = lostRow(body);
+  const gone = lost > 0 && place.row + (place.part > 0 ? 1 : 0) >= lost;
+  return gone ? { place: { row: lost - 1, part: 0 }, gone } : { place, gone };
+};
+const GREY = bodies.length;
+const lostWords = (frame) => {
+  const lost = bodies.map(lostRow).filter((row) => row <= frame.place.row);
+  return lost.length ? `beyond what the page can draw from t = ${number(sceneTimes[Math.min(...lost)])} s on; in grey where it was last` : "";
+};
+
 // Where those stand that have a base of their own, and how much is drawn of those that have no size.
 const layout = (() => {
   const points = bodies.filter((b) => b.kind === "point");
@@ -35,7 +57,7 @@ const layout = (() => {
   let [low, high] = [Infinity, -Infinity];
   for (const b of rails) {
     for (const k of [...b.q, ...b.target]) {
-      for (const v of data.values("scene", k)) if (v !== null) [low, high] = [Math.min(low, v), Math.max(high, v)];
+      for (const v of keptValues(data.values("scene", k))) if (v !== null) [low, high] = [Math.min(low, v), Math.max(high, v)];
     }
   }
   if (!(high > low)) [low, high] = [Number.isFinite(low) ? low - 1 : -1, Number.isFinite(low) ? low + 1 : 1];
@@ -43,6 +65,16 @@ const layout = (() => {
   rails.forEach((b, k) => bases.set(b, [0, -gap * k, 0]));
   return { bases, rails: new Set(rails), low, high, gap, reach, cells: new Set(cells) };
 })();
+// Of a run that blew up at its end: what it was before, so that this is not flat.
+function keptValues(values) {
+  const far = outliers([{ values: values.filter((v) => v !== null) }]);
+  return far ? values.filter((v) => v !== null && Math.abs(v) <= far.usual) : values;
+}
+function keptPoints(points) {
+  const sizes = points.filter((p) => p && finite(p)).map((p) => Math.max(...p.map(Math.abs)));
+  const far = outliers([{ values: sizes }]);
+  return far ? points.filter((p) => p && finite(p) && Math.max(...p.map(Math.abs)) <= far.usual) : points;
+}
 const onRail = (value) => (RAIL * (value - layout.low)) / (layout.high - layout.low);
 const up = scene.down ? ([x, y, z]) => [x, -y, -z] : (p) => p;
 
@@ -95,7 +127,7 @@ const targetPath = paths(targetPoint);
 
 // How large the world is, and so what has no size of its own.
 const world = (() => {
-  const points = bodies.flatMap((body) => [...trailOf(body), ...(body.target.length && body.kind !== "spacecraft" ? targetPath(body) : [])]);
+  const points = bodies.flatMap((body) => [...keptPoints(trailOf(body)), ...(body.target.length && body.kind !== "spacecraft" ? targetPath(body) : [])]);
   for (const body of bodies) {
     const base = layout.bases.get(body);
     if (body.kind === "arm") for (const k of [0, 2]) points.push(add(base, [0, 0, k * 0.2 * scene.arms[body.arm].reach]), ...[-0.5, 0.5].map((x) => add(base, [x * scene.arms[body.arm].reach, 0, 0])));
@@ -109,7 +141,7 @@ const world = (() => {
   }
   const shown = points.filter((p) => p && finite(p));
   const { low, high } = boxOf(shown);
-  const extent = Math.max(1e-9, ...[0, 1, 2].map((k) => high[k] - low[k]));
+  const extent = Math.max(...[0, 1, 2].map((k) => high[k] - low[k])) || 1;
   // Those that travel together, far from where they began, are followed.
   let spread = 0;
   for (let k = 0; k < TRAIL_ROWS && layout.bases.size === 0; k++) {
@@ -153,8 +185,9 @@ const armParts = (arm, frames, base) =>
   });
 
 // Everything to draw of one body at a time.
-const drawBody = (body, place, into) => {
-  const colour = body.vertex;
+const drawBody = (body, now, into) => {
+  const { place, gone } = lastPlace(body, now);
+  const colour = gone ? GREY : body.vertex;
   const q = read(body.q, place);
   if (!finite(q)) return;
   const at = placeOf(body, q);
@@ -189,7 +222,7 @@ const drawBody = (body, place, into) => {
       into.arrows.push({ from: at, to: add(at, scaled(normal, 2.4 * share * world.symbol)), colour, width: 2 });
     }
   } else if (body.kind === "spacecraft") {
-    drawSpacecraft(body, q, place, at, solid, line, into);
+    drawSpacecraft(body, q, place, at, solid, line, into, colour);
   } else {
     into.dots.push({ at, colour, leads: body.leads });
     if (layout.rails.has(body)) line([[0, at[1], 0], [RAIL, at[1], 0]], { alpha: 0.25, width: 1 });
@@ -205,7 +238,7 @@ const mostOf = (k) => {
   return mosts.get(k);
 };
 
-const drawSpacecraft = (body, q, place, at, solid, line, into) => {
+const drawSpacecraft = (body, q, place, at, solid, line, into, colour) => {
   const turn = quaternionTurn(q);
   const p = (x, y, z) => add(at, turned(turn, [x, y, z]));
   const [a, b, c] = [0.34, 0.26, 0.26];
@@ -213,7 +246,7 @@ const drawSpacecraft = (body, q, place, at, solid, line, into) => {
   for (const x of [-a, a]) for (const z of [-c, c]) solid(p(x, -b, z), p(x, b, z), 0.012);
   for (const x of [-a, a]) for (const y of [-b, b]) solid(p(x, y, -c), p(x, y, c), 0.012);
   // Panels along y.
-  for (const s of [-1, 1]) into.faces.push({ points: [p(-0.2, s * b, 0), p(0.2, s * b, 0), p(0.2, s * 0.95, 0), p(-0.2, s * 0.95, 0)], colour: body.vertex });
+  for (const s of [-1, 1]) into.faces.push({ points: [p(-0.2, s * b, 0), p(0.2, s * b, 0), p(0.2, s * 0.95, 0), p(-0.2, s * 0.95, 0)], colour });
   const wanted = body.target.length === 4 ? quaternionTurn(read(body.target, place)) : null;
   ["x", "y", "z"].forEach((name, k) => {
     const axis = [0, 1, 2].map((i) => (i === k ? 1 : 0));

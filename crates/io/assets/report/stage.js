@@ -14,13 +14,15 @@ const stage = (() => {
   let asked = 0;
   let seen = null;
   let frames = 0;
+  let said = ""; // of the picture, whatever the time
   const watchers = [];
 
   slider.max = String(end);
-  slider.step = String(end / 2000);
+  slider.step = String(end / 2000 || "any");
+  slider.disabled = play.disabled = end === 0;
   bodies.forEach((body) => chosen.append(element("option", { value: String(body.vertex), textContent: body.name })));
   part("choice").hidden = bodies.length < 2;
-  const hidden = (body) => body.vertex < agents.length && !shownAgents.has(body.vertex);
+  const hidden = (body) => !shownAgents.has(body.vertex);
 
   const paint = (pen, see, frame, heard, flat) => {
     if (flat) {
@@ -70,14 +72,17 @@ const stage = (() => {
     seen = { see, frame };
     if (!now.flat) lit();
     frames += 1;
-    timeWords.textContent = `t = ${now.t.toFixed(end >= 100 ? 1 : 2)} s of ${number(end, 5)} s`;
+    timeWords.textContent = timeOf(now.t, end);
     slider.value = String(now.t);
     slider.setAttribute("aria-valuetext", `${number(now.t, 4)} seconds`);
     graphPicture(heard);
+    const lost = lostWords(frame);
+    const where = [said, lost].filter(Boolean).join("; ");
+    if (tip.textContent !== where) tip.textContent = where;
     const text = graphWords(heard);
     if (part("graph-words").textContent !== text) part("graph-words").textContent = text;
     const graphs = scene.graphs.length;
-    part("graph-when").textContent = `${graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
+    part("graph-when").textContent = `${heard.graph === null ? "unknown " : graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
     for (const plot of plots) plot.clock?.(now.t);
     watchers.forEach((watch) => watch(now.t));
   };
@@ -102,7 +107,7 @@ const stage = (() => {
     if (usual < 40) return;
     now.flat = true;
     lighting.layers.hidden = true;
-    tip.textContent += "; projected, since light and depth are slow here";
+    said += "; projected, since light and depth are slow here";
   };
   // Whoever asked for less motion sees a picture every half second.
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -132,14 +137,13 @@ const stage = (() => {
   };
   play.onclick = () => setPlaying(!now.playing);
   slider.oninput = () => (setPlaying(false), go(Number(slider.value)));
-  chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), ask());
+  chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), regroup(), ask());
   part("view-reset").onclick = () => (Object.assign(camera, FIRST_VIEW, { zoom: 1 }), ask());
   const follow = part("follow");
   follow.parentElement.hidden = charted || !world.follows;
   follow.onchange = () => ((camera.follow = follow.checked), ask());
   part("graph-now").hidden = !scene.graphs.some((graph) => graph.length > 0);
-  // A long run plays in about half a minute, whoever does not choose.
-  rate.value = ["1", "2", "5", "20"].find((r) => end / Number(r) <= 30) ?? "20";
+  fitRates(rate, end);
 
   const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(charted ? 1 : 0.3, camera.zoom * by))), ask());
   const turn = (az, el) => (turnCamera(az, el), ask());
@@ -205,6 +209,7 @@ const stage = (() => {
     const vertex = nearest(event.clientX - box.left, event.clientY - box.top);
     now.alone = vertex === now.alone ? null : vertex;
     chosen.value = now.alone === null ? "" : String(now.alone);
+    regroup();
     ask();
   };
   overlay.addEventListener("pointerup", release);
@@ -223,15 +228,23 @@ const stage = (() => {
     if (charted) part("view-help").textContent = "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it. Plots follow the same clock: point at one to go to that time.";
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
-    tip.textContent = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+    said = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
   let flatBefore = now.flat;
-  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), draw()));
-  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.layers.hidden = flatBefore), themed()));
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), graphPicture.again(), draw()));
+  addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.layers.hidden = flatBefore), graphPicture.again(), themed()));
   lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.layers.hidden = true), ask()));
+  // The picture reaches to the end of the window, below however many words stand above it.
+  const fit = () => {
+    const top = part("stage").getBoundingClientRect().top + scrollY;
+    part("stage").style.setProperty("--room", `${Math.round(Math.max(470, Math.min(780, innerHeight - top - 12)))}px`);
+  };
+  new ResizeObserver(fit).observe(document.querySelector(".top"));
+  addEventListener("resize", fit);
+  fit();
   new ResizeObserver(ask).observe(view);
   draw();
   return { go, ask, now, end, drawing, paint: paintAt, watch: (watcher) => void watchers.push(watcher), frames: () => frames, playing: () => now.playing };
@@ -253,6 +266,11 @@ Object.assign(document.getElementById("stage"), {
   recorded: (row) => bodies.map((body) => ({ coordinates: body.coordinates, base: layout.bases.get(body) ?? null, tip: read(body.tip, { row, part: 0 }) })),
   times: () => sceneTimes,
   drawing: stage.drawing,
+  pixels: (id) => {
+    const { plot } = state.get(all.find((card) => card.dataset.plot === id));
+    const { width, height } = pictureOf(plot, document.title);
+    return [width, height, plot.width];
+  },
   table: (id) => csvOf(state.get(all.find((card) => card.dataset.plot === id)).plot),
   drawings: () => [...plots].map((plot) => ({ curves: plot.curves?.() ?? shownSeries(plot).length, svg: svgOf(plot, document.title) })).filter(({ curves }) => curves > 0),
 });

@@ -10,11 +10,13 @@ const ANCHORS = { center: "middle", right: "end", end: "end" };
 const BASELINES = { middle: "central", top: "hanging" };
 const PEN = { strokeStyle: "#000", fillStyle: "#000", lineWidth: 1, lineCap: "butt", lineJoin: "miter", font: "10px sans-serif", globalAlpha: 1, textAlign: "start", textBaseline: "alphabetic", mark: "" };
 
+// Several may stand in one page, where no two may have a clip of the same name.
+let clips = 0;
 // Draws in units of its own, `width` by `height` of them; `measure` is a context that knows how wide texts are.
 const svgPen = (width, height, measure) => {
   const parts = [];
   const kept = [];
-  let [path, dash, open, clips] = [[], [], 0, 0];
+  let [path, dash, open] = [[], [], 0];
   const short = (x) => String(Math.round(x * 10) / 10);
   const to = (command) => (...numbers) => void path.push(command + numbers.map(short).join(" "));
   const shape = (attributes) => parts.push(`<path d="${path.join("")}" ${attributes}${pen.globalAlpha < 1 ? ` opacity="${pen.globalAlpha}"` : ""}/>`);
@@ -148,12 +150,12 @@ const drawGrid = (plot, paper, pen) => {
 const CURVE = ' class="curve"';
 const MOST_NAMED = 40;
 const HEAD = 30;
-// What `draw` draws between the title and the names of all curves, which begin `under` the top.
-const svgPage = (width, under, title, all, draw) => {
+// What `draw` draws between the title and the names of all curves, which begin `under` the top, with a pen for a paper of the size that takes.
+const pageWith = (penOf, width, under, title, all, draw) => {
   const named = all.slice(0, MOST_NAMED);
   if (all.length > named.length) named.push({ label: `and ${all.length - named.length} more`, colour: "none" });
   const height = namesBelow(svgPen(0, 0, measuring()), named, width, under) + 12;
-  const pen = svgPen(width, height, measuring());
+  const pen = penOf(width, height);
   pen.fillStyle = colour("--surface");
   pen.fillRect(0, 0, width, height);
   Object.assign(pen, { font: `600 13px ${FONT}`, fillStyle: colour("--ink") });
@@ -161,11 +163,24 @@ const svgPage = (width, under, title, all, draw) => {
   draw(pen);
   Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
   namesBelow(pen, named, width, under);
-  return pen.document(title);
+  return pen;
 };
 
 // A plot as it stands: the range, the curves and the lines that it shows, with its title above and its legend below.
-const svgOf = (plot, title) => svgPage(plot.width, HEAD + plot.height + 18, title, namesOf(plot), (pen) => drawAgain(plot, pen, HEAD));
+const plotPage = (penOf, plot, title) => pageWith(penOf, plot.width, HEAD + plot.height + 18, title, namesOf(plot), (pen) => drawAgain(plot, pen, HEAD));
+const svgOf = (plot, title) => plotPage((width, height) => svgPen(width, height, measuring()), plot, title).document(title);
+// The same in pixels, so many of them that a page can be printed with it.
+const PIXELS = 3;
+const pictureOf = (plot, title) => {
+  const canvas = element("canvas", {});
+  plotPage((width, height) => {
+    Object.assign(canvas, { width: Math.ceil(PIXELS * width), height: Math.ceil(PIXELS * height) });
+    const ctx = canvas.getContext("2d");
+    ctx.scale(PIXELS, PIXELS);
+    return ctx;
+  }, plot, title);
+  return canvas;
+};
 const namesOf = (plot) => plot.named?.() ?? shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
 const drawAgain = (plot, pen, head) => {
   if (plot.again) return plot.again(pen, head);

@@ -102,7 +102,7 @@ const talk = (() => {
     });
     const plot = plotNow();
     if (plot) inside(pen, PLOT, () => (plot.dotsAt ?? clockLine(plot))(pen, t));
-    written(pen, `t = ${t.toFixed(whole[1] >= 100 ? 1 : 2)} s of ${number(whole[1], 5)} s`, { font: "600 16px", colour: "--ink", left: EDGE, top: HIGH - 26, width: 400, line: 18, most: 1 });
+    written(pen, timeOf(t, whole[1]), { font: "600 16px", colour: "--ink", left: EDGE, top: HIGH - 26, width: 400, line: 18, most: 1 });
   };
   const clockLine = (plot) => (pen, t) => {
     const paper = paperOf(plot, pen, 0);

@@ -84,6 +84,30 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
         .unwrap_or_else(|| (index + 1).to_string())
 }
 
+/// What controllers ask for, in one word and in many: torques about axes, forces along them, or inputs without either.
+pub(crate) fn input_words(setup: &Setup) -> (&'static str, &'static str) {
+    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
+    let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
+    let units: BTreeSet<String> = all.map(|(agent, axis)| unit(setup, agent, Signal::Torque, axis)).collect();
+    match units.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["N"] => ("force", "Forces"),
+        ["N", "N m"] => ("torque or force", "Torques and forces"),
+        [] | ["N m"] => ("torque", "Torques"),
+        _ => ("input", "Inputs"),
+    }
+}
+
+/// The same of what pushes do.
+pub(crate) fn push_words(setup: &Setup, pushed: impl Iterator<Item = (usize, usize)>) -> &'static str {
+    let units: BTreeSet<String> = pushed.map(|(agent, axis)| unit(setup, agent, Signal::External, axis)).collect();
+    match units.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["N"] => "External forces",
+        ["N m"] => "External torques",
+        ["1"] => "External inputs",
+        _ => "External torques and forces",
+    }
+}
+
 /// What an entry of a signal is called; nothing for signals with a single entry.
 pub fn entry_name(setup: &Setup, agent: usize, signal: Signal, entry: usize) -> Option<String> {
     let number = || (entry + 1).to_string();

@@ -14,11 +14,46 @@ pub(crate) enum Ground {
     Dark,
 }
 
+/// Lines and discs are told from the ground by at least this contrast, as WCAG 2.1 asks of what is drawn.
+const CONTRAST: f64 = 3.0;
+
+impl Ground {
+    /// Of cards, on which everything is drawn.
+    const fn colour(self) -> [u8; 3] {
+        match self {
+            Ground::Light => [0xff; 3],
+            Ground::Dark => [0x17, 0x1a, 0x20],
+        }
+    }
+}
+
+/// The same hue, so much darker or lighter that it is seen on the ground.
+fn seen_on(ground: Ground, mut colour: [u8; 3]) -> [u8; 3] {
+    while contrast(colour, ground.colour()) < CONTRAST {
+        colour = colour.map(|part| match ground {
+            Ground::Light => (f64::from(part) * 0.97) as u8,
+            Ground::Dark => (f64::from(part) + 0.03 * (255.0 - f64::from(part))).ceil() as u8,
+        });
+    }
+    colour
+}
+
+/// The ratio of two luminances, each with the light that screens reflect.
+fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
+    let linear = |part: u8| {
+        let part = f64::from(part) / 255.0;
+        if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    };
+    let luminance = |[r, g, b]: [u8; 3]| 0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b);
+    let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+    a.max(b) / a.min(b)
+}
+
 /// The colour of one of `count` agents as red, green, blue.
 pub(crate) fn agent(agent: usize, count: usize, ground: Ground) -> [u8; 3] {
     let few = if ground == Ground::Light { LIGHT } else { DARK };
     match few.get(agent) {
-        Some(colour) if count <= few.len() => rgb(*colour),
+        Some(colour) if count <= few.len() => seen_on(ground, rgb(*colour)),
         _ => ramp(agent, count, ground),
     }
 }
@@ -32,7 +67,8 @@ pub(crate) fn ramp(index: usize, count: usize, ground: Ground) -> [u8; 3] {
     let below = (place.floor() as usize).min(VIRIDIS.len() - 2);
     let part = place - below as f64;
     let (a, b) = (rgb(VIRIDIS[below]), rgb(VIRIDIS[below + 1]));
-    [0, 1, 2].map(|k| (f64::from(a[k]) + part * (f64::from(b[k]) - f64::from(a[k]))).round() as u8)
+    let between = [0, 1, 2].map(|k| (f64::from(a[k]) + part * (f64::from(b[k]) - f64::from(a[k]))).round() as u8);
+    seen_on(ground, between)
 }
 
 /// As in CSS.
@@ -43,4 +79,24 @@ pub(crate) fn css([r, g, b]: [u8; 3]) -> String {
 fn rgb(colour: u32) -> [u8; 3] {
     let [_, r, g, b] = colour.to_be_bytes();
     [r, g, b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_colour_is_seen_on_its_ground() {
+        assert!((contrast([0; 3], [255; 3]) - 21.0).abs() < 1e-9);
+        for ground in [Ground::Light, Ground::Dark] {
+            for count in [1, 2, 3, 8, 9, 17, 100] {
+                for k in 0..count {
+                    for colour in [agent(k, count, ground), ramp(k, count, ground)] {
+                        let found = contrast(colour, ground.colour());
+                        assert!(found >= CONTRAST, "{k} of {count} on {ground:?}: {} has {found}", css(colour));
+                    }
+                }
+            }
+        }
+    }
 }

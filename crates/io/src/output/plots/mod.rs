@@ -53,7 +53,7 @@ impl<'a> Plots<'a> {
 
     /// τ, one panel per joint.
     pub(crate) fn torques(&self) -> Result<String, EncodeError> {
-        self.per_joint("Torques", "τ", Signal::Torque, |_| None)
+        self.per_joint(names::input_words(self.record.setup).1, "τ", Signal::Torque, |_| None)
     }
 
     fn per_joint(

@@ -97,6 +97,7 @@ struct Units {
     dq: String,
     s: String,
     tau: String,
+    tau_ext: String,
     /// z, ż, …
     reference: Vec<String>,
 }
@@ -152,6 +153,8 @@ struct DisagreementIndex {
 pub(super) struct DelayIndex {
     pub(super) label: String,
     pub(super) series: usize,
+    /// The series is the greatest and the least value around each time in turn.
+    pub(super) band: bool,
 }
 
 /// Series on one grid.
@@ -249,12 +252,17 @@ impl Payload {
         let solid = scene.is_solid();
 
         let (agents, estimates) = agents(record, table, references, &mut notes);
-        let (delay_t_s, delay_values) =
-            timeline::sample_delays(&record.setup.network.delays, &timeline.delay_jumps, until_s);
+        let (delay_t_s, delay_values) = timeline::sample_delays(&record.setup.network.delays, timeline, until_s);
         let shown_delays = network::shown_delays(record.setup, timeline);
         let delays: Vec<DelayIndex> = (shown_delays.iter().enumerate())
-            .map(|(series, (_, label))| DelayIndex { label: label.clone(), series })
+            .map(|(series, (delay, label))| DelayIndex { label: label.clone(), series, band: timeline.bands[*delay] })
             .collect();
+        if delays.iter().any(|delay| delay.band) {
+            notes.push(
+                "Delays that change too often to be drawn one by one are drawn as their least and their greatest value around each time."
+                    .into(),
+            );
+        }
 
         let index = Index {
             until_s,
@@ -352,6 +360,7 @@ fn axes(setup: &forwardstep_sim::Setup, agent: usize, references: usize) -> Vec<
                 dq: unit(Signal::Velocity),
                 s: unit(Signal::TrackingError),
                 tau: unit(Signal::Torque),
+                tau_ext: unit(Signal::External),
                 reference: (0..references).map(|k| unit(Signal::Reference(k as u8))).collect(),
             },
             position_limits: limits.position_limits,

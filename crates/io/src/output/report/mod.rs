@@ -6,6 +6,7 @@
 mod cascade;
 mod data;
 mod families;
+mod header;
 mod injected;
 mod interfaces;
 mod network;
@@ -21,14 +22,15 @@ pub(crate) mod text;
 use std::time::Duration;
 
 use forwardstep_check::derivation::explain;
+use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
-use forwardstep_sim::{AxisUnit, Setup};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::families::Family;
 use self::interfaces::interfaces;
 use super::explanation::explanation_markup;
 use super::metrics::{Disagreement, Gap, Metrics};
+use super::names;
 use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
@@ -101,7 +103,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
             body {
                 div #error-banner role="alert" {}
                 main {
-                    (sections::header(record, metrics, goes_on))
+                    (header::header(record, metrics, goes_on))
                     (stage::stage(record, metrics, absence, goes_on))
                     @if !record.notices.is_empty() {
                         section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
@@ -147,8 +149,9 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
     let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
     let recorded = |signal| columns.iter().any(|column| column.signal == signal);
-    let no_lengths = agents.iter().flat_map(|agent| &agent.robot.axes).all(|axis| axis.unit == AxisUnit::Own);
-    let input = if no_lengths { "Inputs" } else { "Torques" };
+    let (_, input) = names::input_words(record.setup);
+    let pushed = columns.iter().filter(|column| column.signal == Signal::External);
+    let pushed = names::push_words(record.setup, pushed.map(|column| (column.agent, column.axis)));
     html! {
         section #signals {
             h2 { "Signals" }
@@ -165,7 +168,7 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
                 (card("position", "Positions", "q", ""))
                 @if recorded(Signal::Torque) { (card("torque", input, "τ, after any limit", "")) }
                 @if recorded(Signal::External) {
-                    (card("external", "External torques and forces", "τ_ext, by pushes", ""))
+                    (card("external", pushed, "τ_ext, by pushes", ""))
                 }
                 (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
                 (card("plane", "One over another", "paths and phase planes", ""))

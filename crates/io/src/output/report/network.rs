@@ -17,6 +17,8 @@ const MOST_EDGE_ROWS: usize = 40;
 const MOST_BARS: usize = 20_000;
 /// More graphs are not drawn one by one.
 const MOST_GRAPHS: usize = 12;
+/// More arrows hide each other.
+const MOST_ARROWS: usize = 2000;
 /// More links make a long table.
 const MOST_LINKS: usize = 40;
 /// More delays cannot be told apart.
@@ -31,6 +33,8 @@ pub(crate) struct Gantt {
     bars: Vec<(f64, f64, usize, usize)>,
     /// Start, end and number from zero of the graph in force.
     spans: Vec<(f64, f64, usize)>,
+    /// Until when they go, where there are too many to draw all.
+    drawn_until_s: Option<f64>,
     by_receiver: bool,
 }
 
@@ -52,7 +56,7 @@ impl Gantt {
         let row_of = |edge: &Edge| {
             if by_receiver { Some(edge.to) } else { edges.binary_search(&(edge.from, edge.to)).ok() }
         };
-        let mut gantt = Gantt { rows, bars: Vec::new(), spans: Vec::new(), by_receiver };
+        let mut gantt = Gantt { rows, bars: Vec::new(), spans: Vec::new(), drawn_until_s: None, by_receiver };
         // The bar of a row that goes on as long as nothing changes.
         let mut open: Vec<Option<usize>> = vec![None; gantt.rows.len()];
         for span in spans {
@@ -77,9 +81,13 @@ impl Gantt {
                 }
             }
         }
-        if timeline.cut || gantt.spans.len() < spans.len() {
-            let end_s = gantt.spans.last().map_or(0.0, |span| span.1);
-            notes.push(format!("The network switches very often; it is drawn until t = {} s.", text::number(end_s)));
+        if timeline.drawn_until_s.is_some() || gantt.spans.len() < spans.len() {
+            let drawn_s = gantt.spans.last().map_or(0.0, |span| span.1);
+            gantt.drawn_until_s = Some(drawn_s);
+            notes.push(format!(
+                "The graph changes very often; which graph is in force, and who hears whom, is drawn until t = {} s.",
+                text::number(drawn_s)
+            ));
         }
         gantt
     }
@@ -149,10 +157,6 @@ pub(crate) fn links(setup: &Setup) -> Markup {
 
 /// One small picture per graph.
 pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
-    let time_of = |graph: usize| -> f64 {
-        let spans = timeline.spans.iter().filter(|span| span.graph == graph);
-        spans.map(|span| span.end_s - span.start_s).sum()
-    };
     let agents = setup.agents.len();
     html! {
         div.graphs {
@@ -162,8 +166,10 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
                     figcaption {
                         strong { @if timeline.graphs.len() == 1 { "The graph" } @else { "Graph " (k + 1) } }
                         " " (text::count(graph.len(), "edge"))
+                        @if graph.len() > MOST_ARROWS { ", " (MOST_ARROWS) " of them drawn" }
                         @if timeline.graphs.len() > 1 {
-                            ", in force " (text::number(time_of(k))) " s"
+                            ", in force " (text::number(timeline.in_force_s[k])) " s"
+                            @if let Some(counted_s) = timeline.counted_until_s { " of the first " (text::number(counted_s)) " s" }
                         }
                     }
                 }
@@ -186,7 +192,8 @@ fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
         let radius = if count == 1 { 0.0 } else { RADIUS };
         (radius * angle.cos(), radius * angle.sin())
     };
-    let two_way = |e: &Edge| edges.iter().any(|other| other.from == e.to && other.to == e.from);
+    let pairs: std::collections::HashSet<(usize, usize)> = edges.iter().map(|e| (e.from, e.to)).collect();
+    let two_way = |e: &Edge| pairs.contains(&(e.to, e.from));
     let arrow = |e: &Edge| {
         let ((x0, y0), (x1, y1)) = (place(e.from), place(e.to));
         let length = (x1 - x0).hypot(y1 - y0).max(1e-9);
@@ -211,7 +218,7 @@ fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
     };
     html! {
         svg.graph viewBox="-80 -80 160 160" role="img" aria-label="graph" {
-            @for edge in edges.iter().filter(|e| e.from < count && e.to < count).take(2000) { (arrow(edge)) }
+            @for (edge, _) in edges.iter().zip(drawn(edges.len())).filter(|(e, drawn)| *drawn && e.from < count && e.to < count) { (arrow(edge)) }
             @for agent in 0..count {
                 @let (x, y) = place(agent);
                 @let leads = setup.leader() == Some(agent);
@@ -224,6 +231,17 @@ fn circle(setup: &Setup, edges: &[Edge]) -> Markup {
             }
         }
     }
+}
+
+/// Which of so many edges are drawn: all, or as many as there may be. Multiples of the golden ratio spread them evenly, in whatever order edges
+/// come; every so many would leave out the same senders in the list of every receiver.
+fn drawn(edges: usize) -> Vec<bool> {
+    let part = |edge: usize| (edge as f64 * 0.618_033_988_749_894_9).fract();
+    let mut order: Vec<usize> = (0..edges).collect();
+    order.sort_by(|a, b| part(*a).total_cmp(&part(*b)));
+    let mut drawn = vec![false; edges];
+    order.into_iter().take(MOST_ARROWS).for_each(|edge| drawn[edge] = true);
+    drawn
 }
 
 /// The name of a vertex: of an agent, or of a leader that is none.

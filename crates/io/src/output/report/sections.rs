@@ -7,7 +7,6 @@ use forwardstep_sim::recording::{Drive, Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
-use super::super::conclusion::Conclusion;
 use super::super::ending::ending_sentence;
 use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
 use super::super::names;
@@ -18,89 +17,22 @@ use super::text::{self, number};
 const MOST_LIMIT_ROWS: usize = 24;
 const MOST_TORQUE_ROWS: usize = 64;
 
-/// Title, how it ended, and the few numbers one looks for first.
-pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup {
-    let (class, word) = match record.outcome.ending {
-        Ending::Completed => ("good", "Completed"),
-        Ending::Interrupted { .. } => ("warn", "Interrupted"),
-        Ending::CutOff { .. } => ("warn", "Cut off"),
-        Ending::BrokeDown(_) => ("bad", "Broke down"),
-    };
-    html! {
-        header.top {
-            p.eyebrow { "forwardstep run" span.sep { "/" } (record.scenario_name) }
-            h1 { (record.title) }
-            @if goes_on { p.ending {
-                span #running .badge.warn { "running: " (so_far(record)) }
-                span #running-note {}
-                label { input #reload type="checkbox" checked; " reload" }
-            } }
-            @else { p.ending {
-                span.badge.(class) { (word) }
-                @if let Some(outcome) = record.goal {
-                    @let (class, word) = if outcome.met { ("good", "Goal met") } else { ("bad", "Goal missed") };
-                    span.badge.(class) { (word) }
-                }
-                span { (ending(record, goes_on)) }
-            } }
-            @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
-                p.conclusion { @if goes_on { "so far " } strong.good[reached].bad[!reached && !goes_on] { (sentence) } }
-                @if !goes_on && !advice.is_empty() { ul.advice { @for line in advice { li { (line) } } } }
-            }
-        }
-    }
+/// Whether a run was ended before its horizon by somebody, so that nothing is known of what would have come.
+pub(super) fn is_undecided(record: &RunRecord<'_>) -> bool {
+    matches!(record.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })
 }
 
-/// The few numbers that one looks for first.
-pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
-    let setup = record.setup;
-    html! {
-        dl.figures {
-            @match metrics.disagreement {
-                Disagreement::Measured { last, .. } => {
-                    (figure(&final_gap(setup), &number(last), &names::gap_unit(setup)))
-                }
-                Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
-            }
-            @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
-            @if let Some(speed) = metrics.speed {
-                (figure("Largest speed", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
-            }
-            @let peaks = metrics.peak_torques.iter();
-            @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
-                (figure("Peak torque", &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
-            }
-            @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
-            (figure("Agents", &setup.agents.len().to_string(), ""))
-        }
-    }
-}
-
-/// What was promised, in a line, and how many hypotheses have which answer.
-pub(crate) fn promised(record: &RunRecord<'_>) -> Markup {
-    let report = record.verdicts;
-    let mut counts: Vec<(Answer, usize)> = Vec::new();
-    for answer in report.hypotheses.iter().map(|hypothesis| hypothesis.answer()) {
-        match counts.iter_mut().find(|(known, _)| *known == answer) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((answer, 1)),
-        }
-    }
-    html! {
-        p.promised {
-            a href="#promises" { (report.theorem) } ": "
-            @if counts.is_empty() { "no hypotheses were checked" }
-            @for (k, (answer, count)) in counts.iter().enumerate() {
-                @let (class, sign) = answer_style(*answer);
-                @if k > 0 { ", " }
-                span.(class) { (sign) " " (answer.words()) ": " (count) }
-            }
-        }
+/// What became of the goal.
+pub(super) fn goal_word(record: &RunRecord<'_>, met: bool) -> &'static str {
+    match met {
+        true => "met",
+        false if is_undecided(record) => "undecided",
+        false => "missed",
     }
 }
 
 /// How the run ended, or how far it is.
-fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
+pub(super) fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
     if !goes_on {
         return ending_sentence(record.setup, &record.outcome.ending);
     }
@@ -117,11 +49,7 @@ fn quantity(x: f64, unit: &str) -> String {
     if x.is_finite() { format!("{} {unit}", number(x)) } else { number(x) }
 }
 
-fn figure(name: &str, value: &str, unit: &str) -> Markup {
-    html! { div { dt { (name) } dd { (value) @if !unit.is_empty() && !value.starts_with("not") { span.unit { " " (unit) } } } } }
-}
-
-fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
+pub(super) fn unit_at(setup: &Setup, signal: Signal, agent: usize, axis: usize) -> String {
     text::unit(&names::unit(setup, agent, signal, axis))
 }
 
@@ -188,7 +116,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
     }
 }
 
-fn answer_style(answer: Answer) -> (&'static str, &'static str) {
+pub(super) fn answer_style(answer: Answer) -> (&'static str, &'static str) {
     match answer {
         Answer::Holds => ("good", "✓"),
         Answer::HoldsOnHorizon => ("fair", "✓"),
@@ -206,7 +134,11 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
             (fact("Goal", html! {
                 (outcome.goal.words()) ": "
-                @if outcome.met { strong.good { "met" } } @else { strong.bad { "missed" } }
+                @match goal_word(record, outcome.met) {
+                    "met" => strong.good { "met" },
+                    "missed" => strong.bad { "missed" },
+                    _ => { strong { "undecided" } ", since the run ended early" },
+                }
             }))
         }
         @match metrics.disagreement {
@@ -226,7 +158,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
             (fact("Speed", html! {
                 (quantity(at.value, &unit_at(setup, Signal::Velocity, at.agent, at.axis))) " at most ("
                 (names::agent_name(setup, at.agent)) ", " (names::axis_words(setup, at.agent, at.axis))
-                ", t = " (number(at.t_s)) " s), " (number(speed.last)) " at the end"
+                ", t = " (number(at.t_s)) " s) at recorded rows, " (number(speed.last)) " at the end"
             }))
         }
         (fact("Limits", html! {
@@ -245,7 +177,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
 }
 
 /// What remains at the end, by name.
-fn final_gap(setup: &Setup) -> String {
+pub(super) fn final_gap(setup: &Setup) -> String {
     format!("Final {}", Gap::of(setup).word())
 }
 
@@ -260,12 +192,14 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
     let unit = names::gap_unit(setup);
     let torque = unit_at(setup, Signal::Torque, 0, 0);
     let speed = unit_at(setup, Signal::Velocity, 0, 0);
+    let (what, _) = names::input_words(setup);
+    let (peak, mean) = (format!("Peak {what} at recorded rows"), format!("{what} of an axis, root mean square"));
     let (digital, continuous) = (&cost.digital, &cost.continuous);
     let rows = [
         (&*final_gap(setup), &*unit, continuous.final_disagreement, digital.final_disagreement),
         ("Settled after", "s", continuous.settled_s, digital.settled_s),
-        ("Peak torque", &*torque, continuous.peak_torque, digital.peak_torque),
-        ("Torque of an axis, root mean square", &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
+        (&*peak, &*torque, continuous.peak_torque, digital.peak_torque),
+        (&*mean, &*torque, Some(continuous.rms_torque), Some(digital.rms_torque)),
         (
             "s of an axis, root mean square",
             &*speed,
@@ -310,9 +244,9 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
     html! {
         section #loads {
             h2 { "Loads and limits" }
-            @if metrics.peak_torques.is_empty() { p.note { "No torques were recorded." } } @else {
+            @if metrics.peak_torques.is_empty() { p.note { "No torques or forces were recorded." } } @else {
                 div.card.scroll {
-                    h3 { "Peak torque" span.by { "largest |τ|, the time, and its share of the limit where one is known" } }
+                    h3 { "Peak " (names::input_words(setup).0) span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
                         thead { tr { th {} @for axis in 0..most_axes { th { (shared_words(setup, axis, names::torque_words)) } } } }
                         tbody {
@@ -337,7 +271,9 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                             @let (kind, signal) = match limit.kind {
                                 LimitKind::Position | LimitKind::Unknown => ("position".to_owned(), Signal::Position),
                                 LimitKind::Velocity => ("speed".to_owned(), Signal::Velocity),
-                                LimitKind::Effort => ("torque".to_owned(), Signal::Torque),
+                                LimitKind::Effort => {
+                                    (if names::unit(setup, limit.agent, Signal::Torque, limit.axis) == "N" { "force" } else { "torque" }.to_owned(), Signal::Torque)
+                                }
                                 LimitKind::Signal(signal) => (signal.name().replace('_', " "), signal),
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);

@@ -29,7 +29,7 @@ const PICTURE_JS: [&str; 5] = [
     include_str!("../../../assets/report/graph.js"),
 ];
 const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents) => {\n";
-const END_PICTURE: &str = "return { bodies, scene, world, charted, floorGrid, camera, frameAt, looking, heardAt, graphWords, trailPoint, sceneColours, \
+const END_PICTURE: &str = "return { bodies, scene, world, charted, floorGrid, camera, frameAt, looking, heardAt, graphWords, lostWords, trailPoint, sceneColours, \
                            drawUnder, drawSolids, drawTrails, drawMarks, drawEdges, drawWords };\n};\n";
 /// What leaves the page, and the page itself.
 const LAST_JS: [&str; 3] = [

@@ -92,7 +92,7 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
     let mut main = Series::new(Grid::new(table.t_s, &timeline.break_points(), POINTS), table.t_s);
     let quantities = quantities(record, &table, &mut main);
     let (scene, space) = Scene::of(setup, &table, &timeline, None);
-    let (delay_t_s, delay_values) = timeline::sample_delays(&setup.network.delays, &timeline.delay_jumps, until_s);
+    let (delay_t_s, delay_values) = timeline::sample_delays(&setup.network.delays, &timeline, until_s);
     let shown = network::shown_delays(setup, &timeline);
     let axis = |agent, axis| AxisIndex { units: Units { q: unit(setup, agent, Signal::Position, axis) } };
     let index = SideIndex {
@@ -117,7 +117,7 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
         delays: shown
             .iter()
             .enumerate()
-            .map(|(series, (_, label))| DelayIndex { label: label.clone(), series })
+            .map(|(series, (delay, label))| DelayIndex { label: label.clone(), series, band: timeline.bands[*delay] })
             .collect(),
         scene,
         quantities,

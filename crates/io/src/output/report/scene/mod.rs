@@ -45,8 +45,12 @@ pub(super) struct Scene {
     leader: Option<LeaderScene>,
     /// Of each graph the sender, the receiver and, where it is on the page, the series of the delay.
     graphs: Vec<Vec<(usize, usize, Option<usize>)>>,
+    /// How many edges each has, of which not all may be on the page.
+    edge_counts: Vec<usize>,
     /// What travels on links that carry packets.
     packets: Vec<Flights>,
+    /// Of very many packets every so many are on the page.
+    packets_every: usize,
     /// The third axis points down.
     down: bool,
 }
@@ -93,23 +97,26 @@ struct LeaderScene {
 struct Flights {
     from: usize,
     to: usize,
-    sent_s: Vec<f32>,
+    sent_s: Vec<f64>,
     /// None of a packet that was lost.
-    took_s: Vec<Option<f32>>,
+    took_s: Vec<Option<f64>>,
 }
 
 impl Flights {
-    /// Of all links, every so many packets where there are very many.
-    fn all(network: &Network, until_s: f64) -> Vec<Flights> {
+    /// Of all links, and which part of the packets that is: every so many where there are very many.
+    fn all(network: &Network, until_s: f64) -> (Vec<Flights>, usize) {
         let links = packets::links(network);
         let count: usize = links.iter().map(|(_, _, trace)| trace.packets().len()).sum();
         let every = count.div_ceil(MOST_PACKETS).max(1);
+        // Digits that a run of this length can tell apart.
+        let digits = 10_f64.powf((9.0 - until_s.max(1e-9).log10().ceil()).clamp(0.0, 15.0));
+        let short = |t_s: f64| (t_s * digits).round() / digits;
         let flights = links.into_iter().map(|(from, to, trace)| {
             let sent = trace.packets().iter().filter(|packet| packet.send_s <= until_s).step_by(every);
-            let (sent_s, took_s) = sent.map(|it| (it.send_s as f32, it.delay_s.map(|s| s as f32))).unzip();
+            let (sent_s, took_s) = sent.map(|it| (short(it.send_s), it.delay_s.map(short))).unzip();
             Flights { from, to, sent_s, took_s }
         });
-        flights.collect()
+        (flights.collect(), every)
     }
 }
 
@@ -189,9 +196,10 @@ impl Scene {
         });
         let graphs = graphs.collect();
         let down = agents.iter().any(|agent| agent.kind == Kind::Vehicle);
-        let packets = Flights::all(&setup.network, table.t_s.last().copied().unwrap_or(0.0));
+        let (packets, packets_every) = Flights::all(&setup.network, table.t_s.last().copied().unwrap_or(0.0));
         let solids = shapes.map(|shapes| shapes.solids.clone()).unwrap_or_default();
-        (Scene { arms, solids, agents, leader, graphs, packets, down }, rows)
+        let edge_counts = timeline.graphs.iter().map(Vec::len).collect();
+        (Scene { arms, solids, agents, leader, graphs, edge_counts, packets, packets_every, down }, rows)
     }
 }
 

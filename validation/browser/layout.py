@@ -1,0 +1,240 @@
+"""Checks of how a page is laid out, printed, saved and gone through by keys."""
+
+import csv
+import io
+import time
+
+from checks import expect, value
+from known import masses
+
+RING = "delay.constant_s = 0.1\nedges.ring = {}"
+
+MEASURED = """
+const box = (part) => document.querySelector(part)?.getBoundingClientRect();
+const picture = document.querySelector("#graph-picture svg"), own = picture.getBoundingClientRect();
+const texts = [...picture.querySelectorAll("text")].map((text) => text.getBoundingClientRect());
+const out = (a) => a.left < own.left - 1 || a.right > own.right + 1 || a.top < own.top - 1 || a.bottom > own.bottom + 1;
+const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 3 && b.top < a.bottom - 3;
+return {
+  bottoms: ["#view", "#slider", ".verdict", "#stage .beside-space .plot canvas", "#graph-picture"].map((part) => Math.round(box(part)?.bottom ?? 0)),
+  high: Math.round(own.height), letters: 12 * (picture.getScreenCTM()?.a ?? 0),
+  texts: texts.length, lost: texts.filter(out).length + texts.filter((a, k) => texts.some((b, j) => j < k && meet(a, b))).length,
+};
+"""
+PRINTED = """
+const names = () => [...document.querySelectorAll(".grid .plot")].filter((card) => !card.hidden);
+const wide = () => names().map((card) => Math.round((card.querySelector(".u-wrap, .plane") ?? card).getBoundingClientRect().width));
+const before = wide();
+dispatchEvent(new Event("beforeprint"));
+await new Promise((done) => setTimeout(done, 50));
+const found = {
+  main: document.querySelector("main").clientWidth, wide: wide(), columns: new Set(names().map((card) => Math.round(card.getBoundingClientRect().left))).size,
+  corner: getComputedStyle(document.querySelector(".corner")).display, legend: document.getElementById("legend").clientHeight,
+  curves: [...document.querySelectorAll(".plane")].map((plane) => plane.querySelectorAll("path.curve").length), overlaid: document.querySelectorAll(".plane canvas").length,
+};
+dispatchEvent(new Event("afterprint"));
+await new Promise((done) => setTimeout(done, 50));
+return { ...found, again: String(wide()) === String(before) };
+"""
+
+
+def windows(browser, page, name):
+    """All that belongs together stands in one window, and names in the graph can be read in every window."""
+    for width, height in [(1400, 900), (1366, 768), (1280, 720), (1024, 768), (390, 844)]:
+        browser.screen(width, height, touch=width == 390)
+        browser.open(page)
+        time.sleep(0.3)
+        found, about = browser.run(MEASURED), f"{name} at {width} by {height}"
+        expect(found["high"] >= 205 and found["letters"] >= 10, f"{about}: the graph is {found['high']} px high with letters of {found['letters']} px")
+        expect(found["texts"] > 0 and found["lost"] == 0, f"{about}: {found['lost']} of {found['texts']} names are cut or covered")
+        if width == 1400:
+            expect(max(found["bottoms"]) <= height and min(found["bottoms"]) > 0, f"{about}: picture, slider, verdict, plot and graph end at {found['bottoms']} px")
+        if width > 1000:
+            expect(found["bottoms"][1] <= height, f"{about}: the slider ends at {found['bottoms'][1]} px")
+    browser.screen(1400, 900)
+
+
+def printed(browser, name):
+    """A print has one column, in which everything is drawn, and nothing to press."""
+    found = browser.run(f"return (async () => {{{PRINTED}}})()")
+    expect(found["main"] == 700 and found["columns"] == 1 and all(600 < wide <= 700 for wide in found["wide"]), f"{name} printed: {found}")
+    expect(found["corner"] == "none" and found["legend"] > 0, f"{name} printed: buttons are shown or names are not: {found}")
+    expect(found["curves"] and min(found["curves"]) > 0 and found["overlaid"] == 0, f"{name} printed: planes and paths have {found['curves']} curves")
+    expect(found["again"], f"{name}: the page is another after it was printed")
+
+
+def named(browser, name):
+    """Whatever can be chosen has a name, and so has every plot."""
+    nameless = value(browser, "[...document.querySelectorAll('main select, main canvas')].filter((e) => !(e.closest('label') || e.closest('[aria-label]') || e.closest('[aria-hidden]'))).map((e) => e.closest('[data-plot]')?.dataset.plot ?? e.id)")
+    expect(not nameless, f"{name}: without a name: {nameless}")
+    glued = value(browser, "[...document.querySelectorAll('.canvas[aria-label]')].map((e) => [e.closest('[data-plot]').querySelector('h3').textContent, e.getAttribute('aria-label')]).filter(([title, label]) => /\\s{2}/.test(label) || !label.includes(', '))")
+    expect(not glued, f"{name}: {glued}")
+
+
+def saved(browser, name, unit):
+    """Tables have units and no more digits than numbers; pictures have pixels for print."""
+    table = value(browser, "s.table('position')")
+    rows = list(csv.reader(io.StringIO(table)))
+    expect(all(head.endswith(f" in {unit}") for head in rows[0][1:]), f"{name}: columns {rows[0]}")
+    long = [cell for row in rows[1:] for cell in row[1:] if len(cell.lstrip("-").replace(".", "").split("e")[0].lstrip("0")) > 9]
+    expect(not long, f"{name}: numbers of single precision as {long[:3]}")
+    wide, high, screen = value(browser, "s.pixels('position')")
+    expect(wide >= 2 * screen and high > 2 * 290, f"{name}: a picture of {wide} by {high} where the plot is {screen} wide")
+
+
+TABLE = """
+const card = document.querySelector("[data-plot=position]");
+const table = () => card.querySelector(".exports table");
+const fold = card.querySelector(".exports details");
+fold.open = true;
+await new Promise((done) => setTimeout(done, 60));
+const [all, said] = [table().querySelectorAll("th").length, card.querySelector(".exports .note")?.textContent ?? ""];
+const chip = document.querySelector("#legend button:not(.all)");
+chip.click();
+await new Promise((done) => setTimeout(done, 60));
+const few = table().querySelectorAll("th").length;
+chip.click();
+fold.open = false;
+return [all, few, said];
+"""
+PRESSED = """
+const pick = document.querySelector("[data-plot=position] .pick").querySelector("button[aria-pressed=false], select");
+const name = pick.dataset.pick;
+pick.focus();
+if (pick.tagName === "SELECT") (pick.selectedIndex = 1), pick.onchange();
+else pick.click();
+return [name, document.activeElement.dataset.pick ?? document.activeElement.tagName];
+"""
+
+
+def tables(browser, name, columns):
+    """An open table says what is drawn, and how much it leaves out."""
+    all_, few, said = browser.run(f"return (async () => {{{TABLE}}})()")
+    if columns > 12:
+        expect(all_ == 13 and f"12 of {columns}" in said, f"{name}: {all_} columns, and {said}")
+    else:
+        expect((all_, few) == (columns + 1, columns), f"{name}: {all_} columns, and {few} with one agent hidden")
+
+
+def keys(browser, name):
+    before, after = browser.run(PRESSED)
+    expect(before == after, f"{name}: who pressed a choice is then at {after}")
+
+
+LEADER = """
+const chips = [...document.querySelectorAll("#legend button:not(.all)")];
+const chip = chips.find((one) => one.textContent === "leader");
+const drawn = () => document.getElementById("stage").table("position").split("\\n")[0].split(",").length;
+if (!chip) return null;
+const before = drawn();
+chip.click();
+const after = drawn();
+chip.click();
+return [before, after];
+"""
+
+
+def leader(browser, name):
+    """A leader that is no agent can be hidden like one."""
+    found = browser.run(LEADER)
+    expect(found is not None and found[1] == found[0] - 1, f"{name}: the leader has no chip that hides it: {found}")
+
+
+def joints(browser, name):
+    """No joint empties a card that has others."""
+    empty = browser.run("""
+        const joint = document.getElementById("joint"), found = [];
+        for (const { value } of [...joint.options]) {
+          joint.value = value;
+          joint.onchange();
+          found.push(...[...document.querySelectorAll("#signals [data-plot]:not([hidden])")].filter((card) => card.querySelector(".none")).map((card) => `${card.dataset.plot} at ${value}`));
+        }
+        return found;""")
+    expect(not empty, f"{name}: nothing is drawn in {empty}")
+
+
+def dashes(browser, name, wanted):
+    """Keys name what is dashed."""
+    found = value(browser, "[...document.querySelectorAll('.key span')].map((e) => e.textContent)")
+    expect(all(word in found for word in wanted), f"{name}: {wanted} are missing in {found}")
+
+
+MANY = """
+const heads = () => document.getElementById("stage").table("position").split("\\n")[0].split(",").length - 1;
+const before = heads();
+const chosen = document.getElementById("chosen");
+chosen.value = "5";
+chosen.onchange();
+const one = heads();
+chosen.value = "";
+chosen.onchange();
+const filter = document.querySelector("#legend input");
+filter.value = "point-1";
+filter.oninput();
+const chips = [...document.querySelectorAll("#legend button:not(.all):not([hidden])")].length;
+[...document.querySelectorAll("#legend .all")].find((button) => button.textContent === "only these").click();
+return [before, one, chips, heads()];
+"""
+SPREAD = """
+const rows = document.getElementById("stage").table("position").trim().split("\\n").slice(1).map((row) => row.split(",").map(Number));
+return rows.every(([, greatest, high, middle, low, least]) => greatest >= high && high >= middle && middle >= low && low >= least) && rows[0][1] > rows[0][5];
+"""
+
+
+APART = """
+const found = new DOMParser().parseFromString(document.getElementById("stage").drawing(), "image/svg+xml");
+const places = [...found.querySelectorAll("text")].filter((text) => text.textContent.startsWith("point-")).map((text) => [Number(text.getAttribute("x")), Number(text.getAttribute("y"))]);
+return Math.max(...places.flatMap((a) => places.map((b) => Math.abs(a[0] - b[0]))));
+"""
+
+
+def tiny(browser, name):
+    """What is small is drawn as large as anything else."""
+    apart = browser.run(APART)
+    expect(apart > 60, f"{name}: names are within {apart} px of each other")
+
+
+def many(browser, name):
+    """Of very many agents quantiles are drawn, and curves of those that are chosen; a filter finds them."""
+    expect(browser.run(SPREAD), f"{name}: quantiles are not in order")
+    found = browser.run(MANY)
+    expect(found == [5, 6, 12, 12], f"{name}: quantiles, with one agent, names that match, curves of them: {found}")
+
+
+def units(browser, name, card, title, unit):
+    found = value(browser, f"document.querySelector('[data-plot={card}] h3').textContent")
+    expect(found.startswith(title) and found.endswith(f" {unit}"), f"{name}: {found} is not {title} in {unit}")
+
+
+def all_of(browser, run, folder):
+    long = folder / "long-title.toml"
+    long.write_text(masses(folder, "long-title", RING).read_text().replace('"Masses"', f'"{"Long words of a title " * 8}"').replace('"point"', '"a-point-with-a-very-long-name"'))
+    ten = folder / "ten-arms.toml"
+    ten.write_text(run("six-arms").with_name("scenario.toml").read_text().replace("count = 6 ", "count = 10 ").replace("end_s = 60", "end_s = 6"))
+    for name, scenario in [("long-title", long), ("ten-arms", ten), ("theorem-8", None), ("ten-different-robots", None)]:
+        windows(browser, run(name, scenario), name)
+    for name in ["theorem-8", "formation"]:
+        browser.open(run(name))
+        printed(browser, name)
+        named(browser, name)
+    browser.open(run("theorem-8"))
+    leader(browser, "theorem-8")
+    saved(browser, "theorem-8", "rad")
+    tables(browser, "theorem-8", 5)
+    keys(browser, "theorem-8")
+    browser.open(run("seventeen", masses(folder, "seventeen", RING, count=17)))
+    tables(browser, "seventeen", 17)
+    units(browser, "seventeen", "torque", "Forces", "N")
+    dashes(browser, "seventeen", ["predicted", "guaranteed for s ≡ 0"])
+    browser.open(run("hundred", masses(folder, "hundred", RING, count=100)))
+    many(browser, "hundred")
+    small = masses(folder, "tiny", RING)
+    small.write_text(small.read_text().replace("[-1.0, 1.0]", "[-1e-12, 1e-12]"))
+    browser.open(run("tiny", small))
+    tiny(browser, "tiny")
+    browser.open(run("theorem-7"))
+    joints(browser, "theorem-7")
+    browser.open(run("gusts"))
+    units(browser, "gusts", "external", "External forces", "N")
+    complaints = browser.complaints()
+    expect(not complaints, f"layout: the console says {complaints[:2]}")
