@@ -85,8 +85,10 @@ pub(super) fn steady(
         if t.high.is_finite() {
             return on_piece(formula, slope.as_ref(), t);
         }
-        let exact = formula.bounds(t.low, t.high);
-        if exact.is_finite() { exact } else { late_or_whole(formula, t) }
+        let within = late_or_whole(formula, t);
+        let near_zero = within.low < 0.0 && within.low > -ROOM * within.size();
+        let touches = near_zero && formula.bounds(t.low, t.high).low >= 0.0;
+        Interval { low: if touches { 0.0 } else { within.low }, ..within }
     };
     found(&Stretches::of(formula), enclose, end_s, reach, good)
 }
