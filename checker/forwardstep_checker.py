@@ -22,6 +22,8 @@
 #  3. The mathematics behind the list: that the theorems follow from these hypotheses.
 #  4. What a certificate marks as *given*: numbers that forwardstep drew at random. They are held against the bounds that the
 #     scenario states and nothing else, and a claim that rests on them reaches to the end of the run only.
+#     The edges of a random graph are given, too, and stay: they are held against the rule that draws them.
+#  5. That a weight or a delay which is an irrational constant runs as the double next to it, which is what is judged here.
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
