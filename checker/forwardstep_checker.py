@@ -22,6 +22,8 @@
 #  3. The mathematics behind the list: that the theorems follow from these hypotheses.
 #  4. What a certificate marks as *given*: numbers that forwardstep drew at random. They are held against the bounds that the
 #     scenario states and nothing else, and a claim that rests on them reaches to the end of the run only.
+#     The edges of a random graph are given, too, and stay: they are held against the rule that draws them.
+#  5. That a weight or a delay which is an irrational constant runs as the double next to it, which is what is judged here.
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
@@ -165,6 +167,7 @@ def said(number): return str(number) if len(str(number)) <= 24 else f"{float(num
 # --- Intervals with rational ends; an end that is not known is an infinite float
 
 INF, WHOLE = math.inf, (-math.inf, math.inf)
+FOR_EVER, LATE, END = (Fraction(0), INF), (Fraction(1), INF), (INF, INF)
 
 def infinite(x): return isinstance(x, float)
 
@@ -176,7 +179,9 @@ def rounded(x, upwards):
 
 def span(low, high): return rounded(low, False), rounded(high, True)
 
-def total(x, y): return x if infinite(x) else y if infinite(y) else x + y
+def total(x, y):
+    decided(not (infinite(x) and infinite(y)) or x == y, "∞ − ∞")
+    return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
     unbounded = infinite(x) or infinite(y)
@@ -186,7 +191,9 @@ def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
 def minus(a): return -a[1], -a[0]
 
+# What is a limit at ∞ cannot be multiplied with what may come to zero; ends of intervals can.
 def multiply(a, b):
+    decided(not any(x in (END, (-INF, -INF)) and y[0] <= 0 <= y[1] for x, y in ((a, b), (b, a))), "0 · ∞")
     ends = [product(x, y) for x in a for y in b]
     return span(min(ends), max(ends))
 
@@ -217,25 +224,23 @@ def odd_series(x, sign):
 # By Machin's formula.
 PI = add(multiply((16, 16), odd_series(Fraction(1, 5), -1)), multiply((-4, -4), odd_series(Fraction(1, 239), -1)))
 
-# sin x, or cos x where `turned`, of a rational x: reduced by multiples of π, then Taylor; sin is 1-Lipschitz.
-def sine_at(x, turned):
-    half = Fraction(1, 2) if turned else Fraction(0)
-    n = round(x / PI[0] + half)
-    near = Fraction(math.floor((x + (half - n) * PI[0]) * (1 << 220)), 1 << 220)
-    room, square = abs(half - n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219), -near * near
+# sin of a rational x: reduced by multiples of π, then Taylor; sin is 1-Lipschitz.
+def sine_at(x):
+    n = round(x / PI[0])
+    near = Fraction(math.floor((x - n * PI[0]) * (1 << 220)), 1 << 220)
+    room, square = abs(n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219), -near * near
     value = add(taylor(near, lambda k: square / (2 * k * (2 * k + 1))), (-room, room))
     return minus(value) if n % 2 else value
 
-# sin of an interval, or cos: its ends, and 1 or −1 where a crest or a trough may lie inside.
+# sin of an interval, or cos, which is a quarter of a turn ahead: its ends, and 1 or −1 where a crest or a trough may lie inside.
 def sine(a, turned):
     if infinite(a[0]) or infinite(a[1]) or a[1] - a[0] >= 7: return Fraction(-1), Fraction(1)
     if a == (0, 0): return (Fraction(turned),) * 2
-    low, high = hull(sine_at(a[0], turned), sine_at(a[1], turned))
-    # Crests of cos are at 2kπ, of sin at 2kπ + π/2; troughs are π further.
-    for crest, shift in ((True, 0), (False, 1)):
-        at = Fraction(shift) + (0 if turned else Fraction(1, 2))
-        turns = [(end / pi - at) / 2 for end in a for pi in PI]
-        if math.floor(max(turns)) >= math.ceil(min(turns)): low, high = (low, Fraction(1)) if crest else (Fraction(-1), high)
+    a = add(a, multiply(PI, (Fraction(1, 2),) * 2)) if turned else a
+    low, high = hull(sine_at(a[0]), sine_at(a[1]))
+    for extreme in (-1, 1):
+        turns = [end / pi / 2 - Fraction(extreme, 4) for end in a for pi in PI]
+        if math.floor(max(turns)) >= math.ceil(min(turns)): low, high = min(low, extreme), max(high, extreme)
     return max(low, Fraction(-1)), min(high, Fraction(1))
 
 def exp_at(x):
@@ -270,6 +275,7 @@ def atan_at(x):
     return multiply((2, 2), (odd_series(ends[1], -1)[0], odd_series(ends[0], -1)[1]))
 
 def power(a, exponent):
+    if exponent == 0: return (Fraction(1),) * 2
     if exponent.denominator == 1:
         n = abs(exponent.numerator)
         decided(n <= 1000, "an exponent is too large")
@@ -373,6 +379,9 @@ def shaped(node, names, depth):
         if name in ("min", "max") and len(arguments) > 1: return functools.reduce(lambda a, b: (name, a, b), arguments)
     raise Meaningless("a formula has something that no formula has")
 
+# The same of what may be a number.
+def motion_of(entry, where): return formula(entry) if isinstance(entry, str) else ("number", exact(entry, where))
+
 # The formulas that a formula is made of.
 def parts_of(tree): return [part for part in tree[1:] if isinstance(part, tuple)] if tree[0] != "points" else []
 
@@ -406,37 +415,96 @@ def quotient(tree):
     parts = list(map(quotient, parts_of(tree)))
     if None in parts or kind not in ("+", "-", "*", "/", "^") or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8):
         return None
-    (a, b), (c, d) = parts[0], parts[-1]
-    if kind == "^":
-        a, b = (convolved(b, b), convolved(a, b)) if tree[2] < 0 else (a, b)
-        found = [functools.reduce(convolved, [x] * abs(int(tree[2])), [Fraction(1)]) for x in (a, b)]
-    elif kind in "+-":
-        c = c if kind == "+" else [-x for x in c]
-        found = [sum(pair_) for pair_ in itertools.zip_longest(convolved(a, d), convolved(c, b), fillvalue=Fraction(0))], convolved(b, d)
-    else:
-        found = (convolved(a, c), convolved(b, d)) if kind == "*" else (convolved(convolved(a, d), d), convolved(convolved(b, c), d))
-    return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
+    first, last = parts[0], parts[-1]
+    # Q²/(P Q) for the inverse of P/Q: no pole is lost.
+    if kind == "/" or kind == "^" and tree[2] < 0: last = convolved(last[1], last[1]), convolved(*last)
+    if kind == "-": last = [-x for x in last[0]], last[1]
+    found = [functools.reduce(convolved, of, [Fraction(1)]) for of in zip(*([last] * abs(int(tree[2])) if kind == "^" else [first, last]))]
+    if kind in "+-":
+        crossed = convolved(first[0], last[1]), convolved(last[0], first[1])
+        found[0] = [sum(pair_) for pair_ in itertools.zip_longest(*crossed, fillvalue=Fraction(0))]
+    return (found or ([Fraction(1)],) * 2) if max(map(len, found), default=0) <= 2 * MOST_DEGREE else None
 
 def trimmed(p): return trimmed(p[:-1]) if p and p[-1] == 0 else p
 
-# P/Q for all t with 1/t in the interval u: by u^d P and u^d Q, d the larger degree, which are polynomials in u.
-def far(p, q, u):
-    degree, values = max(len(p), len(q)), []
-    for coefficients in (p, q):
-        rising = [Fraction(0)] * (degree - len(coefficients)) + coefficients[::-1]
-        values.append(functools.reduce(lambda value, c: add(multiply(value, u), (c, c)), rising[::-1], (Fraction(0),) * 2))
-    return multiply(values[0], inverse(values[1]))
+# P/Q for all t from a time on, or at ∞: by powers of u = 1/t both are polynomials in u, beside a power of t.
+def far(p, q, t):
+    u = inverse(t)
+    over, under = (functools.reduce(lambda value, c: add(multiply(value, u), (c, c)), of, (Fraction(0),) * 2) for of in (p, q))
+    return multiply(multiply(over, inverse(under)), power(t, Fraction(len(p) - len(q))))
 
-# What a formula keeps within while t keeps within the interval `t`, or states within those of a table. Intervals alone make ∞/∞ of
-# t/(1 + t) for large t.
+# A formula without the absolute values, the smaller and the larger ones that are decided by signs while t keeps within an interval.
+@once
+def resolved(tree, t):
+    if tree[:2] == ("f", "abs") or tree[0] in ("min", "max"):
+        a, b = (tree[2], negated(tree[2])) if tree[0] == "f" else tree[1:]
+        low, high = attempt(enclose, tree[2] if tree[0] == "f" else ("-", a, b), t) or WHOLE
+        if low > 0 or high < 0 or t[0] != t[1] and (low == 0 or high == 0): return resolved(a if (low >= 0) == (tree[0] != "min") else b, t)
+    return tuple(resolved(part, t) if isinstance(part, tuple) else part for part in tree) if parts_of(tree) else tree
+
+def by_quotient(tree, t):
+    ratio = quotient(resolved(tree, t))
+    decided(ratio and any(ratio[1]), "is no quotient of polynomials")
+    return far(*map(trimmed, ratio), t)
+
+# The factors of a product; a divisor is one as a power.
+def factors_of(tree):
+    if tree[:2] == ("f", "neg"): return [("number", Fraction(-1)), *factors_of(tree[2])]
+    if tree[0] == "/": return factors_of(tree[1]) + [("^", tree[2], Fraction(-1))]
+    return factors_of(tree[1]) + factors_of(tree[2]) if tree[0] == "*" else [tree]
+
+# A quotient of polynomials, what is bounded, and the exponential of a quotient of polynomials: of |p| ≤ c tⁿ and g ≤ −r t, r > 0, the
+# product p exp(g) is at most c tⁿ exp(−r t), which falls from n/r on.
+def damped(tree, t):
+    parts = factors_of(tree)
+    powers, plain = [part[2] for part in parts if part[:2] == ("f", "exp")], [part for part in parts if quotient(part)]
+    decided(powers and plain, "is not damped")
+    whole = functools.reduce(times, plain)
+    n = max(0, len(trimmed(quotient(whole)[0])) - len(trimmed(quotient(whole)[1]))) if quotient(whole) else MOST_DEGREE
+    falls = -enclose(("/", functools.reduce(plus, powers), ("t",)), t)[1]
+    bounded_ = [("/", whole, ("^", ("t",), Fraction(n)))] + [part for part in parts if part not in plain and part[:2] != ("f", "exp")]
+    most = functools.reduce(multiply, [(size(enclose(part, t)),) * 2 for part in bounded_])[1]
+    decided(falls > 0 and not infinite(most), "is not damped")
+    if infinite(falls) or t == END: return (Fraction(0),) * 2
+    start = max(t[0], n / falls)
+    return hull(*(multiply((sign * most,) * 2, multiply((start**n,) * 2, exp_at(-falls * start))) for sign in (-1, 1)))
+
+# The terms of what is a sum once products are multiplied out, each a number and what it is multiplied with.
+@once
+def weighed(tree):
+    kind, one = tree[0], (Fraction(1),) * 2
+    if not has_variable(tree): return [(enclose(tree, WHOLE), ONE)]
+    if tree[:2] == ("f", "neg"): return [(minus(x), p) for x, p in weighed(tree[2])]
+    if kind not in ("+", "-", "*", "/"): return [(one, tree)]
+    a, b = weighed(tree[1]), weighed(tree[2]) if kind != "/" or not has_variable(tree[2]) else [(one, ("^", tree[2], Fraction(-1)))]
+    if kind in "+-": return a + [(x if kind == "+" else minus(x), q) for x, q in b]
+    decided(len(a) * len(b) <= 1000, "a formula has too many terms")
+    return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, times(p, q)) for (x, p), (y, q) in itertools.product(a, b)]
+
+# Sines and cosines of one angle together: a sin φ + b cos φ keeps within ± √(a² + b²).
+def swinging(tree, t):
+    found, rest = {}, (Fraction(0),) * 2
+    decided(len(weighed(tree)) > 1, "is no sum")
+    for by, part in weighed(tree):
+        if part[:2] in (("f", "sin"), ("f", "cos")):
+            ratio = quotient(part[2])
+            pair_ = found.setdefault(repr([trimmed(of) for of in ratio] if ratio else part[2]), [(Fraction(0),) * 2] * 2)
+            pair_[part[1] == "cos"] = add(pair_[part[1] == "cos"], by)
+        else: rest = add(rest, multiply(by, enclose(part, t)))
+    most = sum(function("sqrt", square(pair_))[1] for pair_ in found.values())
+    return add(rest, (-most, most))
+
+# What a formula keeps within while t keeps within the interval `t`, or states within those of a table; at `END` what holds all its
+# limit points as t → ∞. Intervals alone make ∞/∞ of t/(1 + t) for large t, 0 · ∞ of t exp(−t), and 2 of sin t − cos t.
 @once
 def enclose(tree, t):
-    if t == (0, INF): return hull(enclose(tree, (Fraction(0), Fraction(1))), enclose(tree, (Fraction(1), INF)))
-    ratio = quotient(tree) if isinstance(t, tuple) and t[1] == INF and t[0] > 0 and tree[0] in ("+", "-", "*", "/", "^") else None
-    if ratio is None or len(trimmed(ratio[0])) > len(trimmed(ratio[1])): return in_one_pass(tree, t)
-    ways = attempt(far, *map(trimmed, ratio), (Fraction(0), 1 / t[0])), attempt(in_one_pass, tree, t)
-    decided(any(ways), "a divisor may be zero")
-    return max(way[0] for way in ways if way), min(way[1] for way in ways if way)
+    if t == FOR_EVER: return hull(enclose(tree, (Fraction(0), Fraction(1))), enclose(tree, LATE))
+    plain = not isinstance(t, tuple) or t[1] != INF or t[0] <= 0 or not has_variable(tree)
+    if plain or tree[0] in ("t", "points"): return in_one_pass(tree, t)
+    more = {"+": (by_quotient, swinging), "-": (by_quotient, swinging), "*": (by_quotient, swinging, damped), "/": (by_quotient, damped)}
+    ways = [found for found in (attempt(way, tree, t) for way in (in_one_pass, *more.get(tree[0], (by_quotient,)))) if found]
+    decided(ways, "nothing bounds this")
+    return max(low for low, _ in ways), min(high for _, high in ways)
 
 def attempt(of, *arguments):
     try: return of(*arguments)
@@ -459,8 +527,12 @@ def constant(tree):
 
 # The number that a formula is for all t ≥ 0, where one pass shows it.
 def constant_for_ever(tree):
-    if not has_variable(tree): return constant(tree)
-    low, high = attempt(enclose, tree, (Fraction(0), INF)) or WHOLE
+    if not has_variable(tree):
+        low, high = enclose(tree, WHOLE)
+        decided(float(low) == float(high), "a constant has too many digits")
+        # What runs is the double next to a number that is not rational.
+        return low if low == high else decimal(repr(float(low)))
+    low, high = attempt(enclose, tree, FOR_EVER) or WHOLE
     return low if low == high else None
 
 def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
@@ -478,62 +550,61 @@ ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 def everywhere(tree):
     broken = tree[0] == "^" and tree[2].denominator > 1
     partly = broken or tree[:2] in (("f", "log"), ("f", "sqrt"))
-    decided(not partly or enclose(tree[1] if broken else tree[2], WHOLE)[0] > 0, "a root or a logarithm may be of what is not positive")
+    # Above one the slope of a power is bounded at zero.
+    low = enclose(tree[1] if broken else tree[2], WHOLE)[0] if partly else INF
+    decided(low > 0 or low == 0 and broken and tree[2] > 1, "a root or a logarithm may be of what is not positive")
     if tree[0] in ("/", "^"): enclose(tree, WHOLE)
     return all(map(everywhere, parts_of(tree)))
 
 def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 
-# By t, where there are no kinks; with `kinks` what encloses the slopes on both sides of them. A quotient is a product with a power: its
-# divisor is not squared again with every derivative.
+# By t, where there are no kinks. A quotient is a product with a power: its divisor is not squared again with every derivative.
 @once
-def derivative(tree, kinks=False):
+def derivative(tree):
     kind = tree[0]
     if kind == "t" or not has_variable(tree): return ONE if kind == "t" else ZERO
     if kind == "points": return *tree[:3], tree[3] + 1
     a, *_, b = parts_of(tree) * 2
-    da, db = derivative(a, kinks), derivative(b, kinks)
+    da, db = derivative(a), derivative(b)
     if kind in "+-": return plus(da, db if kind == "+" else negated(db))
     if kind == "*": return plus(times(da, b), times(a, db))
     if kind == "/":
-        return plus(("/", da, b), negated(times(a, times(db, ("^", b, Fraction(-2)))))) if has_variable(b) else ("/", da, b)
+        first = ZERO if da == ZERO else ("/", da, b)
+        return plus(first, negated(times(a, times(db, ("^", b, Fraction(-2)))))) if has_variable(b) else first
     if kind == "^":
         # No power below the first is made, whose slope would divide by what may be zero.
         return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
-    if kind in ("min", "max") and kinks: return "hull", da, db
     outer = {
         "neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree, "log": ("/", ONE, a),
         "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
-        "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))} | ({"abs": ("hull", ("number", Fraction(-1)), ONE)} if kinks else {})
+        "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))}
     decided(kind == "f" and tree[1] in outer, "a derivative has kinks")
     return times(da, outer[tree[1]])
 
-# What holds all limit points of a formula as t → ∞, by the rules of limits; undecided where these do not tell, as of ∞ − ∞.
-def limit(tree):
-    kind, ratio = tree[0], quotient(tree)
-    if ratio is not None and any(ratio[1]):
-        p, q = map(trimmed, ratio)
-        return ((INF if p[-1] / q[-1] > 0 else -INF),) * 2 if len(p) > len(q) else far(p, q, (Fraction(0),) * 2)
-    if not has_variable(tree): return enclose(tree, WHOLE)
-    parts = list(map(limit, parts_of(tree)))
-    if kind in ("f", "^"): return function(tree[1], parts[0]) if kind == "f" else power(parts[0], tree[2])
-    if kind == "-": parts[1] = minus(parts[1])
-    decided(kind not in "+-" or not {INF, -INF} <= {low for low, _ in parts}, "∞ − ∞")
-    if kind == "/": parts[1] = inverse(parts[1])
-    vanishing, growing = any(low <= 0 <= high for low, high in parts), any(infinite(low) for low, _ in parts)
-    decided(kind not in "*/" or not (vanishing and growing), "0 · ∞")
-    return {"-": add, "/": multiply}.get(kind, COMBINED.get(kind))(*parts)
+def limit(tree): return enclose(tree, END)
 
-# (q, n) of a constant q πⁿ.
+# Whether a formula has one limit, which may be ∞.
+@once
+def settles(tree):
+    tree, (low, high) = resolved(tree, END), attempt(limit, tree) or WHOLE
+    return low == high or (low, high) != WHOLE and not turns_for_ever(tree) and all(map(settles, parts_of(tree)))
+
+# Whether a formula that is continuous is so uniformly from a time on: it has a limit that is finite, or a bounded slope, or is made of
+# what is so by what does not stretch, or by what has values on a bounded set, and is uniformly continuous there.
+@once
+def steady(tree, t):
+    if not has_variable(tree) or tree[0] == "t" or settles(tree) and not infinite(limit(tree)[0]): return True
+    plain = tree[0] in ("+", "-", "min", "max") or tree[0] == "f" and tree[1] not in ("exp", "log")
+    compact = all(finite(part, [t]) for part in parts_of(tree)) and attempt(in_one_pass, tree, t) is not None
+    made = (plain or compact) and all(steady(part, t) for part in parts_of(tree))
+    return made or finite(attempt(derivative, tree) or ("state", ""), [t])
+
+# (q, n) of a constant q πⁿ, by the polynomials that it is made of with π as their variable.
 def multiple(tree):
-    if tree[0] == "pi": return Fraction(1), 1
-    if tree[0] in ("*", "/"):
-        (a, n), (b, m) = multiple(tree[1]), multiple(tree[2])
-        return (a * b, n + m) if tree[0] == "*" else (a / b, n - m)
-    if tree[:2] == ("f", "neg"): return multiple(("*", ("number", Fraction(-1)), tree[2]))
-    value = constant(tree)
-    decided(value != 0, "an angle does not change")
-    return value, 0
+    turned_ = lambda part: ("t",) if part == ("pi",) else tuple(turned_(x) if isinstance(x, tuple) else x for x in part)
+    p, q = map(trimmed, quotient(turned_(tree)) or ([], []))
+    decided(p and q and not any(p[:-1] + q[:-1]), "an angle does not change, or not by a multiple of a power of π")
+    return p[-1] / q[-1], len(p) - len(q)
 
 # (unit, length): with t = unit · u the formula repeats when u grows by `length`, if every t stands in a sine or cosine of q t, or
 # of q π t, plus a constant, for rational q. The unit is 1 where they are of π t, π where they are of t.
@@ -554,25 +625,25 @@ def period(tree):
 # --- The scenario, read from its text
 
 LAGRANGIAN = ("planar_arm", "point_mass", "ship", "urdf")
-MADE_FOR = {
-    "adaptive": LAGRANGIAN, "known": LAGRANGIAN, "position_only": ("point_mass",), "thrust": ("vehicle", "rotorcraft"),
-    "task_space": ("planar_arm", "urdf"), "attitude": ("spacecraft",),
-    "linear_adaptive": ("chain", "vector_chain"), "linearising": ("chain", "vector_chain"), "immersion": ("chain",),
-    "adaptive_backstepping": ("strict_feedback", "pure_feedback"), "passivity_filter": ("spacecraft",)}
+# Each law, the robots that it is made for, and the keys of its gains. What is not written is positive by default.
+LAWS = {
+    "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
+    "position_only": (("point_mass",), "damping filter_per_s adaptation_gain"),
+    "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
+    "task_space": (("planar_arm", "urdf"), "damping adaptation_gain task_gain kinematic_gain torque_share "
+                   "reference_gain_per_s attitude_gain"),
+    "attitude": (("spacecraft",), "error_gain_per_s2 rate_gain_per_s filter_gain_per_s damping"),
+    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
+    "immersion": (("chain",), "gain_per_s adaptation_gain"),
+    "adaptive_backstepping": (("strict_feedback", "pure_feedback"), "gains_per_s adaptation_gain"),
+    "passivity_filter": (("spacecraft",), "error_gain_n_m filter_gain_per_s damping")}
+MADE_FOR, GAINS = ({law: of[k] for law, of in LAWS.items()} for k in (0, 1))
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
 CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping"), ("continuous", "observer")
 LED = {"differentiable": "theorem-9", "without_acceleration": "remark-12", "swarm": "swarm", "observer": "leader-observer"}
 
-# The gains of each law, by their keys. What is not written is positive by default.
-GAINS = {
-    "adaptive": ("damping", "adaptation_gain"), "known": ("damping",), "position_only": ("damping", "filter_per_s", "adaptation_gain"),
-    "task_space": ("damping", "adaptation_gain", "task_gain", "kinematic_gain", "torque_share", "reference_gain_per_s", "attitude_gain"),
-    "attitude": ("error_gain_per_s2", "rate_gain_per_s", "filter_gain_per_s", "damping"),
-    "thrust": ("damping_per_s", "stiffness", "adaptation_gain", "estimate_start_kg"), "linearising": ("gain_per_s",),
-    "linear_adaptive": ("gain_per_s", "adaptation_gain"), "immersion": ("gain_per_s", "adaptation_gain"),
-    "adaptive_backstepping": ("gains_per_s", "adaptation_gain"), "passivity_filter": ("error_gain_n_m", "filter_gain_per_s", "damping")}
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
                   "bounds determinant_floor antiderivatives null_space tip_velocity bias_m_s2")
 REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
@@ -647,8 +718,9 @@ def designed(key, body):
 def alone(body): return body.get("follows_target", False) and not (body.get("heard") or {"coupling_polynomial", "nonlinear"} & set(body))
 
 class Scenario:
-    def __init__(self, text, folder):
-        self.file, self.folder, self.inputs = read_toml(text), folder, {}
+    # `given` are the edges that were drawn, graph by graph.
+    def __init__(self, text, folder, given=()):
+        self.file, self.folder, self.inputs, self.given = read_toml(text), folder, {}, iter(given)
         file = table(self.file, "the scenario", "format title time agents reference leader law start network control "
                      "external_wrenches solver goal")
         such(file.get("format") == 2, "`format` must be 2")
@@ -678,7 +750,7 @@ class Scenario:
         for each in names:
             agent = Agent(each, len(self.agents), entry, place)
             agent.law, law = chosen(entry.get("law", self.file.get("law", USUAL_LAW[agent.robot])), "law", MADE_FOR, "laws")
-            agent.gains = table(law, f"law.{agent.law}", " ".join(GAINS[agent.law]) + OTHER_SETTINGS)
+            agent.gains = table(law, f"law.{agent.law}", GAINS[agent.law] + OTHER_SETTINGS)
             such(agent.robot in MADE_FOR[agent.law], f"the law `{agent.law}` is not made for `{agent.robot}`")
             self.agents.append(agent)
 
@@ -710,7 +782,7 @@ class Scenario:
     def trajectory(self, file, where):
         kind, body = choice(file, where)
         if kind == "formulas":
-            return [formula(entry) if isinstance(entry, str) else ("number", exact(entry, where)) for entry in listed(body, where)]
+            return [motion_of(entry, where) for entry in listed(body, where)]
         if kind == "sinusoids": return [self.waves(table(entry, where), where) for entry in listed(body, where)]
         if kind == "points":
             times = [exact(t, f"{where}.times_s") for t in listed(table(body, where).get("times_s"), where)]
@@ -798,7 +870,7 @@ class Scenario:
 
     def edges(self, value):
         rule, body = (None, {}) if isinstance(value, list) else choice(value, "edges")
-        body = table(body, "edges", "direction among centre weight delay file")
+        body = table(body, "edges", "direction among centre weight delay file in_degree seed")
         found = [self.edge(entry) for entry in value] if rule is None else self.ruled(rule, body)
         pairs = {(edge.source, edge.to) for edge in found}
         such(len(pairs) == len(found) and all(a != b != self.leader for a, b in pairs), "an edge stands twice, to itself, or to the leader")
@@ -821,9 +893,10 @@ class Scenario:
                 row |= {"weight": Fraction(row["weight"])} if DECIMAL.fullmatch(row.get("weight", "")) else {}
                 row |= {"delay": {"constant_s": decimal(row.pop("delay_s"))}} if "delay_s" in row else {}
             return [self.edge(row) for row in rows]
-        known(rule, DIRECTIONS, "edges")
+        known(rule, (*DIRECTIONS, "random"), "edges")
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
         direction, n = body.get("direction"), len(members)
+        if rule == "random": return self.drawn_edges(members, exact(body.get("in_degree"), "in_degree"), body)
         such(rule != "complete" or n * n <= MOST_EDGES, "there are too many edges")
         after = members[1:] + members[:1] * (rule == "ring" and n > 1)
         sources = [self.vertex(body.get("centre"))] if rule == "star" else members
@@ -831,6 +904,16 @@ class Scenario:
         such(direction in (None, *DIRECTIONS[rule]), "`direction` is not one of the rule")
         back = [(b, a) for a, b in pairs]
         return [Edge(a, b, *self.terms(body)) for a, b in dict.fromkeys({"both": pairs + back, "in": back}.get(direction, pairs))]
+
+    # Everybody hears as many others as the rule says; whom, is given.
+    def drawn_edges(self, members, in_degree, body):
+        node = next(self.given, None)
+        decided(node is not None, "the edges of a random graph are drawn, and not given")
+        pairs = [tuple(self.index.get(name.text()) for name in ends.each()) for ends in node.each()]
+        fit = all(len(ends) == 2 and set(ends) <= set(members) and ends[0] != ends[1] for ends in pairs) and len(set(pairs)) == len(pairs)
+        heard = collections.Counter(to for _, to in pairs) if fit else {}
+        require(node, fit and all(heard[to] == in_degree for to in members), "are not edges that the rule can draw")
+        return [Edge(*ends, *self.terms(body)) for ends in pairs]
 
     # What acts from outside: for every agent the end of each push, infinite where there is none
 
@@ -843,22 +926,22 @@ class Scenario:
                 meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
                 such(meant, f"there is no agent `{name}`")
                 for agent in meant:
-                    acting = ((max(begins, first), min(ends, last)) for first, last in self.courses(push.get("by")))
-                    agent.pushes += [last for first, last in acting if first < last]
+                    acting = ((max(begins, first), min(ends, last), trees) for first, last, trees in self.courses(push.get("by")))
+                    agent.pushes += [(last, trees) for first, last, trees in acting if first < last]
 
-    # From when until when the tables of a push have values; (0, ∞) for formulas.
+    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, but for those of hands.
     def courses(self, by):
         kind, body = choice(by, "by")
         keys = ("force_n", "torque_n_m") if kind == "wrench" else ("target", "target_rad", "target_m")
         parts = kind == "wrench" or kind.startswith("virtual_spring")
         for file in [table(body, "by")[key] for key in keys if key in body] if parts else [body]:
-            form, rows = choice(file, "by") if not isinstance(file, list) else ("formulas", {})
+            form, rows = choice(file, "by") if not isinstance(file, list) else ("formulas", file)
             known(form, ("rows", "csv", "formulas"), "courses")
-            times = [Fraction(0), INF]
+            times, hand = [Fraction(0), INF], kind.startswith("virtual_spring")
             if form != "formulas":
                 times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")] if form == "rows" else [
                     decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
-            yield min(times), max(times)
+            yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" and not hand else []
 
     def used(self): return [edge for graph in self.graphs for edge in graph]
 
@@ -1016,7 +1099,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes")
+             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1077,21 +1160,19 @@ def tiled(claim, windows, sequence):
     require(windows, len(ends) > 1, "must be some")
     return ends
 
-# Windows tile whole periods: any stretch of time twice as long as the longest of them holds a whole one.
-@rule("spanning-tree leader-reaches-all", "windows")
+# Windows tile whole periods: any stretch of time twice as long as the longest of them holds a whole one. Where each phase has a tree of
+# its own, the order does not matter.
+@rule("spanning-tree leader-reaches-all leader-in-every-graph", "windows every-phase")
 def tiling(claim, windows):
-    scenario, phases = claim.scenario, claim.scenario.for_ever()
-    require(claim.proof, scenario.switching != "random" or len(scenario.graphs) == 1, "is of no drawn schedule")
+    scenario, phases, single = claim.scenario, claim.scenario.for_ever(), claim.proof.field("kind").text() == "every-phase"
+    drawn_ = scenario.switching == "random" and len(scenario.graphs) > 1 or claim.id == "leader-in-every-graph"
+    require(claim.proof, single or not drawn_, "is of no drawn schedule")
     covered = sum(len(window.field("phases").each()) for window in windows.each())
-    require(windows, covered % len(phases) == 0 and covered <= MOST_CELLS, "must cover whole periods")
-    tiled(claim, windows, phases * (covered // len(phases)))
+    whole = covered % len(phases) == 0 and covered <= MOST_CELLS
+    require(windows, whole, "must be one for each phase" if single else "must cover whole periods")
+    ends = tiled(claim, windows, phases * (covered // len(phases)))
+    require(windows, not single or ends == list(range(len(phases) + 1)), "must be one for each phase")
     return f"{len(windows.each())} windows tile {covered} phases, each with a spanning tree"
-
-# Each phase that recurs has a tree of its own: the order does not matter.
-@rule("spanning-tree leader-reaches-all leader-in-every-graph", "every-phase")
-def every_phase(claim, windows):
-    phases = claim.scenario.for_ever()
-    require(windows, tiled(claim, windows, phases) == list(range(len(phases) + 1)), "must be one for each phase")
 
 # (phase, from when, until when) of a drawn sequence that is given.
 def drawn(scenario, given):
@@ -1124,17 +1205,21 @@ def cut(claim, groups):
     led, apart = claim.id == "leader-reaches-all", sum(map(len, sets)) == len(set().union(*sets))
     fits = len(sets) == 1 and scenario.leader not in sets[0] if led else len(sets) >= 2 and apart
     require(groups, fits, f"must be {'one group without the leader' if led else 'two or more that are disjoint'}")
-    for phase, (source, to) in ((phase, ends) for phase in scenario.for_ever() for ends in scenario.pairs[phase]):
-        heard = any(to in group and source not in group for group in sets)
-        require(groups, not heard, f"are not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}")
+    for group in sets: closed(scenario, groups, group, scenario.for_ever())
 
-# In this phase, which recurs, a group without the leader hears no agent outside itself.
+# A group hears no agent outside itself in some phases.
+def closed(scenario, node, group, phases):
+    for phase, (source, to) in ((phase, ends) for phase in phases for ends in scenario.pairs[phase]):
+        words = f"is not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}"
+        require(node, to not in group or source in group, words)
+
+# In this phase, which recurs, a group without the leader does not.
 @rule("leader-in-every-graph", "unheard")
 def unheard(claim, phase, group):
-    scenario, at, found = claim.scenario, phase.count() - 1, {claim.scenario.index.get(name.text()) for name in group.each()}
-    require(phase, at in scenario.for_ever(), "does not recur")
-    require(group, found and not found & {None, scenario.leader}, "must name agents, and not the leader")
-    require(group, not any(to in found and source not in found for source, to in scenario.pairs[at]), "hear somebody else")
+    found = {claim.scenario.index.get(name.text()) for name in group.each()}
+    require(phase, phase.count() - 1 in claim.scenario.for_ever(), "does not recur")
+    require(group, found and not found & {None, claim.scenario.leader}, "must name agents, and not the leader")
+    closed(claim.scenario, group, found, [phase.count() - 1])
 
 # Of (3) and (23) delays may jump with the phases.
 @rule("dwell-time fixed-graph", "never-switches one-graph")
@@ -1389,14 +1474,18 @@ def find(claim, agent):
 # In this state, x1, x2, … or x, dx, d2x, … or x1, x2, dx1, dx2, …, a term of the agent has no value.
 @rule("defined-terms", "no-value")
 def no_value(claim, agent, state):
-    at, of = [(entry.number(),) * 2 for entry in state.each()], find(claim, agent)
-    letters = [f"{d}x{k + 1}" for d in RATES for k in range(len(of.body["psi"]))] if of.robot == "vector_chain" else STATES
-    found = dict(zip(letters, at)) | dict(zip((f"{d}x" for d in RATES), at))
+    of = find(claim, agent)
+    found = states_of(state, len(of.body["psi"]) if of.robot == "vector_chain" else 0)
     for term in terms(of.body):
         try: enclose(term, found)
         except Undecided as reason:
             if isinstance(reason, Undefined): return f"{agent.text()} has a term without a value there"
     raise Undecided("whether a term has a value in this state is not decided here")
+
+# States by their letters; of several axes those of each.
+def states_of(state, axes=0):
+    at, letters = [(entry.number(),) * 2 for entry in state.each()], [f"{d}x{k + 1}" for d in RATES for k in range(axes)] or STATES
+    return dict(zip(letters, at)) | dict(zip((f"{d}x" for d in RATES), at))
 
 RATES = ["", "d"] + [f"d{k}" for k in range(2, 256)]
 STATES = [f"x{k}" for k in range(1, 256)] + [f"{d}x" for d in RATES] + [f"{d}x{k}" for d in RATES[1:16] for k in range(1, 33)]
@@ -1438,7 +1527,7 @@ def by_text(claim):
 def pieces(node, tree, end_s):
     kind, unit, length = node.field("range").text(), (Fraction(1),) * 2, end_s
     require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
-    if kind == "for-ever": return [(Fraction(0), INF)]
+    if kind == "for-ever": return [FOR_EVER]
     if kind == "period": unit, length = period(tree)
     elif kind == "tail":
         length = node.field("until_s").number()
@@ -1454,9 +1543,16 @@ def enclosed(node, tree, end_s):
     require(node.field("within"), len(ends) == 2, "must have two ends")
     for piece in pieces(node, tree, end_s):
         found = enclose(tree, piece)
+        if not (ends[0] <= found[0] and found[1] <= ends[1]): found = attempt(straight, tree, piece) or found
         words = f"does not hold [{said(found[0])}, {said(found[1])}], found from t = {said(piece[0])} s on"
         require(node.field("within"), ends[0] <= found[0] and found[1] <= ends[1], words)
     return tuple(ends)
+
+# The same from the middle on, by the slope: the error is one of the square of the length of a piece.
+def straight(tree, piece):
+    middle, half = (piece[0] + piece[1]) / 2, (piece[1] - piece[0]) / 2
+    decided(not infinite(half), "has no middle")
+    return add(enclose(tree, (middle,) * 2), multiply(enclose(derivative(tree), piece), (-half, half)))
 
 def lasts(node): return node.field("range").text() != "run"
 
@@ -1468,9 +1564,11 @@ def formulas(claim, node, text_of):
         if text is None: continue  # What is constant, though by a formula, needs no enclosure.
         tree = formula(text)
         within = enclosed(entry, tree, claim.scenario.end_s)
-        # A formula that repeats, and has a value everywhere, is uniformly continuous; so is one whose slope is bounded from a time on.
-        repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1:]
-        found[text] = *within, lasts(entry) and (repeats or finite(derivative(tree, True), last))
+        # A formula that repeats, and has a value everywhere, is uniformly continuous.
+        repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1]
+        uniform = lasts(entry) and (repeats or steady(tree, last))
+        decided(uniform or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
+        found[text] = *within, uniform
     return found
 
 # The formula that the delay of an edge follows, as a text.
@@ -1567,8 +1665,10 @@ def below(claim, t_s, edge):
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    low, high = limit(followed(claim, edge))
-    require(edge, infinite(low) or high < 0 or (high == 0 and claim.id == "bounded-weights"), f"stays near [{said(low)}, {said(high)}]")
+    tree = followed(claim, edge)
+    if grows(tree): return "exceeds every bound again and again, in one direction or the other"
+    low, high = limit(tree)
+    require(edge, high < 0 or (high == 0 and claim.id == "bounded-weights"), f"stays near [{said(low)}, {said(high)}]")
     return f"goes to {said(high)} as t grows"
 
 @rule("bounded-delays", "loses-all")
@@ -1579,8 +1679,7 @@ def loses_all(claim, edge):
 
 # v within ± a else ± a, a tanh(v/a), v/(1 + |v|/a): odd, continuous, never falling, between 0 and v, for any a > 0.
 @rule("coupling-sector", "form")
-def coupling(claim, form, size):
-    require(form, (form.text(), size.number()) == claim.scenario.coupling, "is not that of the scenario")
+def coupling(claim, form, size): require(form, (form.text(), size.number()) == claim.scenario.coupling, "is not that of the scenario")
 
 # Agents that agree need real roots; those that follow a target or a leader need roots to the left of the axis.
 @rule("real-roots hurwitz manipulability common-order pushes-end", "number")
@@ -1595,7 +1694,11 @@ def number(claim, value):
     elif claim.id == "manipulability": require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
     elif claim.id == "common-order":
         require(value, all(len(agent.roots) == stated for agent in agents), "is not the order of all agents")
-    else: require(value, all(end <= stated for agent in agents for end in agent.pushes), "comes before the end of a push")
+    else:
+        # A formula may come to zero, and stay there.
+        gone = lambda trees: trees and stated >= 0 and all(enclose(tree, (stated, INF)) == (0, 0) for tree in trees)
+        ended = all(end <= stated or gone(trees) for agent in agents for end, trees in agent.pushes)
+        require(value, ended, "comes before the end of a push")
     return said(stated)
 
 @rule("desired-dynamics", "routh no-routh")
@@ -1657,7 +1760,7 @@ def gains(claim, matrices):
     for entry in matrices.each():
         entry.only("agent", "gain", "pivots")
         stated[entry.field("agent").text(), entry.field("gain").text()] = entry
-    keys = [(agent, key) for agent in claim.scenario.agents if agent.law in ASKED_OF[claim.id] for key in GAINS[agent.law]]
+    keys = [(agent, key) for agent in claim.scenario.agents if agent.law in ASKED_OF[claim.id] for key in GAINS[agent.law].split()]
     for agent, key in keys: gain_is_positive(claim, agent, key, agent.settings().get(key), matrices, stated)
 
 # One gain of one agent: a number, a diagonal, a matrix, or a bandwidth times scales that are positive.
@@ -1704,32 +1807,27 @@ def bounded(claim, order, stretch):
     decided(not jumps, "the third derivative of a curve through points jumps")
     for tree, lowest, most in ((tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"):
         for k in range(most + 1):
-            if k >= lowest and not finite(tree, [(Fraction(0), INF)]):
+            if k >= lowest and not finite(tree, [FOR_EVER]):
                 require(stretch, finite(tree, pieces(stretch, tree, scenario.end_s)), f"does not bound derivative {k}")
                 always = always and lasts(stretch)
             tree = derivative(tree)
     return f"up to derivative {order.count()}", always
 
-# The terms of a sum, each as what it repeats and what is beside that: (P, S) of P S. Signs do not matter to what follows.
-def summands(tree):
-    even = tree[0] in ("+", "-", "*") or tree[:2] == ("f", "neg") or tree[0] == "/" and not has_variable(tree[2])
-    parts = list(map(summands, parts_of(tree))) if even else []
-    if tree[0] == "*":
-        decided(len(parts[0]) * len(parts[1]) <= 1000, "a formula has too many terms")
-        return [(times(p, q), times(r, s)) for (p, r), (q, s) in itertools.product(*parts)]
-    return sum(parts, []) or [(ONE, tree) if has_variable(tree) and repeats(tree) else (tree, ONE)]
-
-# A constant that is divided by stands among the terms, too, which changes nothing. A sine or cosine of what goes beyond every bound
-# comes to 1 again and again.
+# A sine or cosine of what goes beyond every bound comes to 1 again and again.
 def repeats(tree): return turns_for_ever(tree) or attempt(period, tree) is not None
 
 def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and infinite((attempt(limit, tree[2]) or (0, 0))[0])
 
-# Whether a formula exceeds every bound: the P of one term does, its S is not always zero, and beside it all others vanish.
+# Whether a formula exceeds every bound. Of each term P is what does not repeat, and S is what does: the P of one term exceeds every bound,
+# its S is not always zero, and beside it all others vanish.
 def grows(tree):
-    beside = lambda p, others: all(attempt(limit, ("/", q, p)) == (0, 0) and finite(s, [(Fraction(0), INF)]) for q, s in others)
-    endless, found = lambda p: infinite((attempt(limit, p) or (0, 0))[0]), summands(tree)
-    return endless(tree) or any(endless(p) and swings(s) and beside(p, found[:k] + found[k + 1:]) for k, (p, s) in enumerate(found))
+    if tree[:2] in (("f", "abs"), ("f", "neg")): return grows(tree[2])
+    split = lambda part, of: functools.reduce(times, (x for x in factors_of(part) if (has_variable(x) and repeats(x)) == of), ONE)
+    found = [(by, split(part, False), split(part, True)) for by, part in weighed(tree) if by != (0, 0)]
+    beside = lambda p, others: all(attempt(limit, ("/", q, p)) == (0, 0) and finite(s, [FOR_EVER]) for _, q, s in others)
+    endless = lambda p: infinite((attempt(limit, p) or (0, 0))[0])
+    ahead = lambda k, by, p, s: (by[0] > 0 or by[1] < 0) and endless(p) and swings(s) and beside(p, found[:k] + found[k + 1:])
+    return endless(tree) or any(ahead(k, *term) for k, term in enumerate(found))
 
 # Whether a formula repeats, or stays, and differs from zero at one of some times.
 def swings(tree):
@@ -1745,20 +1843,21 @@ def diverges(claim, motion, axis, order):
     require(axis, 1 <= axis.count() <= len(paths) and paths[axis.count() - 1][0] != "points", "is no axis with a formula")
     require(order, lowest <= order.count() <= most, "is of no derivative that a law uses")
     tree = functools.reduce(lambda tree, _: derivative(tree), range(order.count()), paths[axis.count() - 1])
-    require(order, grows(tree), "stays bounded, or swings")
+    require(order, not finite(tree, [FOR_EVER]), "stays bounded")
+    decided(grows(tree), "whether a derivative exceeds every bound is not decided here")
     return f"derivative {order.count()} of axis {axis.count()} exceeds every bound"
 
 # Whether a formula is shown to be bounded on each of some stretches.
 def finite(tree, stretches): return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
 
 # What drives who follows a leader, axis by axis, must stay below γ: α q̇ + q̈, α q̇ + β q̈ + d³q, or d³q.
-def drive(claim):
+def drive(claim, at=FOR_EVER):
     scenario, design = claim.scenario, claim.scenario.body.get("design")
     require(claim.proof, scenario.motion is not None, "is of no motion")
     alpha, beta = coefficients(scenario)
     factors = {**dict.fromkeys(FIRST_ORDER, (0, alpha, 1, 0)), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
     gamma = positive(scenario.body.get("gain"), "gain")
-    rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=tree) for tree in scenario.motion]
+    rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=resolved(tree, at)) for tree in scenario.motion]
     sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
@@ -1770,7 +1869,7 @@ def quaternion(claim):
     return paths[-4:]
 
 # The square of how far a target is from where the reach of a tip is counted.
-def reached(claim):
+def reached(claim, _=FOR_EVER):
     agent = claim.own[0]
     if agent.robot == "planar_arm":
         first, second = planar(agent.body)[1]
@@ -1790,7 +1889,7 @@ def singular(claim, vector):
     require(vector, 10**12 * taken[1] <= whole * sum(x * x for x in u), "is not taken to zero")
 
 # What has to stay strictly between two numbers: (formula, what holds the lower one, what holds the upper one).
-LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim: [
+LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim, _=FOR_EVER: [
     (squares(quaternion(claim)), (Fraction(0),) * 2, (INF, INF))]}
 
 @rule("sign-gain target-within-reach nonzero-quaternion", "bounds distance norm")
@@ -1804,7 +1903,7 @@ def kept(claim, bounds=None, bound=None):
 
 @rule("sign-gain target-within-reach", "instant out-of-reach")
 def left(claim, t_s, axis=None):
-    limits, k = LIMITS[claim.id](claim), axis.count() if axis else 1
+    limits, k = LIMITS[claim.id](claim, (t_s.number(),) * 2), axis.count() if axis else 1
     require(t_s, 1 <= k <= len(limits) and t_s.number() >= 0, "comes before the start, or is of no axis")
     tree, least, most = limits[k - 1]
     low, high = enclose(tree, (t_s.number(),) * 2)
@@ -1833,12 +1932,28 @@ def half_turn(claim): require(claim.proof, scalar_part(claim)[1] <= 0, "is not s
 @rule("nonzero-quaternion", "fades")
 def fades(claim): require(claim.proof, all(limit(tree) == (0, 0) for tree in quaternion(claim)), "is not shown: an entry may stay")
 
-# Where it is a millionth of what it is at another time, no direction can be told, as the laws have it.
 @rule("nonzero-quaternion", "vanishes")
-def vanishes(claim, at_s, beside_s):
-    small, large = (enclose(squares(quaternion(claim)), (t.number(),) * 2) for t in (at_s, beside_s))
-    require(at_s, min(at_s.number(), beside_s.number()) >= 0 and 0 < large[0] >= 10**12 * small[1], "is no time at which it vanishes")
-    return f"its length at t = {said(at_s.number())} s is at most a millionth of that at {said(beside_s.number())} s"
+def vanishes(claim, at_s):
+    at = at_s.number()
+    zero = at >= 0 and all(enclose(tree, (at, at)) == (0, 0) for tree in quaternion(claim))
+    require(at_s, zero, "is no time at which all entries are zero")
+    return f"all entries are zero at t = {said(at)} s"
+
+# A formula without a number that it is multiplied with.
+def core(tree): return weighed(tree)[0][1] if len(weighed(tree)) == 1 else tree
+
+# An entry has both signs within a stretch on which it is continuous, having values throughout; the others are zero for ever, or a number
+# times the same formula.
+@rule("nonzero-quaternion", "changes-sign")
+def changes_sign(claim, entry, from_s, to_s):
+    k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim)
+    require(entry, k in range(4), "is no entry")
+    idle = [attempt(enclose, tree, FOR_EVER) == (0, 0) or core(tree) == core(trees[k]) for tree in trees]
+    require(entry, all(idle), "is not the only one that changes")
+    require(to_s, 0 <= start < end and all(finite(tree, [(start, end)]) for tree in trees), "ends no stretch on which all have values")
+    (a, b), (c, d) = (enclose(trees[k], (t, t)) for t in (start, end))
+    require(entry, b < 0 < c or d < 0 < a, "has one sign")
+    return f"entry {k + 1} passes zero between t = {said(start)} s and {said(end)} s"
 
 # One entry keeps away from zero.
 @rule("nonzero-quaternion", "entry-away")
@@ -1867,10 +1982,11 @@ def swarm(claim, pivots):
 
 # For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows
 # have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
-def factors(scenario):
+def factors(scenario, state=None):
+    at = states_of(state) if state else WHOLE
     for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
         psi = {"strict_feedback": "1", "pure_feedback": "x1"}.get(agent.robot, agent.body.get("psi", "1"))
-        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), WHOLE)
+        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), at)
         yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
 
 # Or by the determinant: the product of the m − 1 other singular values is at most the power m − 1 of their quadratic mean.
@@ -1893,10 +2009,11 @@ def determinant(rows):
 def input_factor(claim):
     for name, within, floor in factors(claim.scenario): require(claim.proof, max(within[0], -within[1]) >= floor, f"is not so for {name}")
 
+# In this state, or in all.
 @rule("input-factor", "factor")
-def small_factor(claim, agent):
-    found = {name: size(within) < floor for name, within, floor in factors(claim.scenario)}
-    require(agent, found.get(agent.text(), False), "has no constant factor below its floor")
+def small_factor(claim, agent, state=None):
+    found = {name: size(within) < floor for name, within, floor in factors(claim.scenario, state)}
+    require(agent, found.get(agent.text(), False), "has no factor below its floor")
 
 # An equation without a slope along its next state while the others are 0.7.
 @rule("input-factor", "unmoved")
@@ -1924,9 +2041,11 @@ def check(certificate_text, scenario_text, folder, digests=True):
     found = []
     try:
         document = read_certificate(certificate_text)
-        document.only("format", "producer", "scenario", "theorem", "hypotheses", "agreement")
+        document.only("format", "producer", "scenario", "theorem", "hypotheses", "agreement", "given_edges")
         require(document.field("format"), document.field("format").count() == FORMAT, f"must be {FORMAT}")
-        scenario = Scenario(scenario_text, folder)
+        given = document.optional("given_edges")
+        scenario = Scenario(scenario_text, folder, given.each() if given else ())
+        require(document, next(scenario.given, None) is None, "gives edges of a graph that is not drawn")
         asked, spoken = requirements(scenario), set()
         require(document.field("theorem"), document.field("theorem").text() == theorem(scenario), f"must be {theorem(scenario)}")
         found += [outcome(scenario, entry, asked, spoken) for entry in document.field("hypotheses").each()]

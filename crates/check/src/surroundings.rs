@@ -54,7 +54,7 @@ fn endless(push: &Push) -> bool {
 const DOUBLINGS: i32 = 24;
 
 /// When a push ends, s; one without an end, too, where its formulas are zero from some time on. A hand does not let go at zero.
-fn ends_s(push: &Push) -> f64 {
+pub(crate) fn ends_s(push: &Push) -> f64 {
     let [_, ends_s] = push.span_s();
     let zero_from = |from_s: f64| match push.course() {
         Course::Each(functions) => functions.iter().all(|function| match function {

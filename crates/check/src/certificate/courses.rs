@@ -5,6 +5,7 @@ use forwardstep_sim::trajectory::{Path, Sinusoid, Spline};
 
 use super::enclosure::{Stretches, late_or_whole};
 use super::numbers::sum;
+use super::slopes;
 
 /// Room, as a part, for coefficients of curves, which are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
@@ -61,7 +62,10 @@ impl<'a> Course<'a> {
     pub(super) fn enclose_derivatives(&self, order: usize, t_s: Interval) -> Vec<Interval> {
         let mut derivatives = vec![Interval::WHOLE; order + 1];
         match self {
-            Course::Formula(formula) => formula.enclose_derivatives(t_s, &mut derivatives),
+            Course::Formula(formula) => {
+                let trees = slopes::derivatives(formula, order);
+                derivatives.iter_mut().zip(&trees).for_each(|(out, tree)| *out = late_or_whole(tree, t_s));
+            }
             Course::Curve(spline, added) => {
                 let mut jet = spline.enclose_jet(t_s).map(|within| within.with_room(ROOM * within.size()));
                 jet[0] = jet[0] + Interval::point(*added);

@@ -69,9 +69,9 @@ fn late_for_ever(setup: &Setup) -> Option<Proof> {
         match limit(formula) {
             Limit::Up | Limit::Down => Some(Proof::Limit(at)),
             Limit::Near(within) if within.high < 0.0 => Some(Proof::Limit(at)),
-            Limit::Near(_) | Limit::Unknown => {
-                first(formula, |value| value.high < 0.0).map(|t_s| Proof::Below(t_s, at))
-            }
+            Limit::Near(_) | Limit::Unknown => first(formula, |value| value.high < 0.0)
+                .map(|t_s| Proof::Below(t_s, at))
+                .or_else(|| swings(formula, at)),
         }
     })
 }
@@ -84,11 +84,16 @@ fn fading(setup: &Setup) -> Option<Proof> {
         match limit(formula) {
             Limit::Up | Limit::Down => Some(Proof::Limit(at)),
             Limit::Near(within) if within.high <= 0.0 => Some(Proof::Limit(at)),
-            Limit::Near(_) | Limit::Unknown => {
-                first(formula, |value| value.high <= 0.0).map(|t_s| Proof::Below(t_s, at))
-            }
+            Limit::Near(_) | Limit::Unknown => first(formula, |value| value.high <= 0.0)
+                .map(|t_s| Proof::Below(t_s, at))
+                .or_else(|| swings(formula, at)),
         }
     })
+}
+
+/// What exceeds every bound again and again, as t |sin t| does.
+fn swings(formula: &Expression, at: (usize, usize, usize)) -> Option<Proof> {
+    formula.for_ever().is_unbounded().then_some(Proof::Limit(at))
 }
 
 /// The first of some times at which the value of a formula is clearly of a kind.
@@ -115,8 +120,14 @@ fn largest(delay: &Delay) -> BigRational {
         Some((Some(link), _)) if link.bound_s().is_finite() => by_rule(link),
         // Ages are differences of sums of what is written: one rounding in each.
         Some((_, trace)) => above(trace.statistics().largest_age_s * (1.0 + 1e-12) + 1e-12),
-        None => Number::written(delay.known().bound_s),
+        None => above_rounded(delay.known().bound_s),
     }
+}
+
+/// A number as it is written; of so many digits that it is that of a constant which is not rational, one that is not below.
+fn above_rounded(value: f64) -> BigRational {
+    let digits = format!("{value:e}").bytes().take_while(|byte| *byte != b'e').filter(u8::is_ascii_digit).count();
+    if digits < 16 { Number::written(value) } else { above(value.next_up()) }
 }
 
 /// (lost + 1) · period + latency + jitter.

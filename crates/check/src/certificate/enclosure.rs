@@ -5,6 +5,7 @@ use forwardstep_core::expression::{Expression, Interval};
 use super::exact::{above, below};
 use super::late::late;
 use super::proof::{Enclosure, Range};
+use super::slopes::{on_piece, slope};
 
 /// How many pieces are tried.
 const CELLS: [usize; 6] = [1, 8, 32, 128, 512, 2048];
@@ -30,12 +31,24 @@ pub(super) fn enclosed(
     reach: Reach,
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
-    found(&Stretches::of(formula), |t| late_or_whole(formula, t), end_s, reach, good)
+    let slope = slope(formula);
+    let enclose = |t: Interval| match t.high.is_finite() {
+        true => on_piece(formula, slope.as_ref(), t),
+        false => late_or_whole(formula, t),
+    };
+    found(&Stretches::of(formula), enclose, end_s, reach, good)
 }
 
 /// What a formula keeps within on a stretch of time, which may have no end.
 pub(super) fn late_or_whole(formula: &Expression, t_s: Interval) -> Interval {
-    if t_s.high.is_finite() { formula.enclose(t_s) } else { late(formula, t_s.low).within }
+    if t_s.high.is_finite() {
+        return formula.enclose(t_s);
+    }
+    if t_s.low > 0.0 {
+        return late(formula, t_s.low).within;
+    }
+    // As a checker does it: up to 1 s, and from there on.
+    formula.enclose(Interval { low: 0.0, high: 1.0 }).hull(late(formula, 1.0).within)
 }
 
 /// What is tried besides [0, ∞) at once and the run.
@@ -59,23 +72,23 @@ impl Stretches {
     }
 }
 
-/// The same of a formula that is shown to be uniformly continuous as well where the stretch has no end: its slope is bounded from
-/// some time on. What repeats, and what ends, needs no more than its values.
+/// The same of a formula where the ends matter: one pass in rational numbers ends at zero where rounded ends fall short of it, as
+/// 0.2 + 0.2 sin 3 t.
 pub(super) fn steady(
     formula: &Expression,
     end_s: f64,
     reach: Reach,
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
+    let slope = slope(formula);
     let enclose = |t: Interval| {
         if t.high.is_finite() {
-            return formula.enclose(t);
+            return on_piece(formula, slope.as_ref(), t);
         }
-        let late = late(formula, t.low);
-        // One pass in rational numbers ends at zero where rounded ends fall short of it: 0.2 + 0.2 sin 3 t.
-        let exact = formula.bounds(t.low, t.high);
-        let within = if exact.is_finite() { exact } else { late.within };
-        if late.slope.is_finite() { within } else { Interval::WHOLE }
+        let within = late_or_whole(formula, t);
+        let near_zero = within.low < 0.0 && within.low > -ROOM * within.size();
+        let touches = near_zero && formula.bounds(t.low, t.high).low >= 0.0;
+        Interval { low: if touches { 0.0 } else { within.low }, ..within }
     };
     found(&Stretches::of(formula), enclose, end_s, reach, good)
 }

@@ -1,4 +1,4 @@
-//! What a formula and its slope keep within from some time on, in one pass and by the rules that a checker has.
+//! What a formula keeps within from some time on, in one pass and by the rules that a checker has.
 
 use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Step, Unary};
 use num_rational::BigRational;
@@ -11,10 +11,21 @@ use super::ratio::Ratio;
 pub(super) struct Late {
     /// What it keeps within.
     pub(super) within: Interval,
-    /// What its slope keeps within; where it has kinks, the slopes on both sides of them.
-    pub(super) slope: Interval,
     /// Itself, where it is a quotient of polynomials.
     pub(super) ratio: Option<Ratio>,
+    damped: Damped,
+    /// Sines and cosines of one angle each, by what they are multiplied with; and what the rest keeps within.
+    waves: Vec<(Ratio, [Interval; 2])>,
+    rest: Interval,
+    constant: bool,
+}
+
+/// A product: a quotient of polynomials, the exponential of one, and what keeps within bounds.
+#[derive(Clone, Debug)]
+struct Damped {
+    over: Option<Ratio>,
+    power: Option<Ratio>,
+    rest: Interval,
 }
 
 /// What `formula` does from `from_s` on.
@@ -27,13 +38,91 @@ struct Lates {
     from_s: f64,
 }
 
+const ONE: Interval = Interval { low: 1.0, high: 1.0 };
+const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+
 impl Lates {
     /// With what the quotient of polynomials tells, where the part is one.
-    fn part(&self, within: Interval, slope: Interval, ratio: Option<Ratio>) -> Late {
-        let known = |ratio: Option<Ratio>| ratio.filter(|_| self.from_s > 0.0)?.from(self.from_s);
-        let within = both(within, known(ratio.clone()));
-        let slope = both(slope, known(ratio.as_ref().and_then(Ratio::derivative)));
-        Late { within, slope, ratio }
+    fn part(&self, within: Interval, ratio: Option<Ratio>) -> Late {
+        let known = ratio.as_ref().filter(|_| self.from_s > 0.0).and_then(|ratio| ratio.from(self.from_s));
+        let within = both(within, known);
+        let plain = Damped { over: None, power: None, rest: within };
+        let damped = ratio.clone().map_or(plain, |over| Damped { over: Some(over), power: None, rest: ONE });
+        Late { within, ratio, damped, waves: Vec::new(), rest: within, constant: false }
+    }
+
+    /// A product, of which exponentials that fall make more than their ends tell.
+    fn product(&self, within: Interval, ratio: Option<Ratio>, damped: Option<Damped>) -> Late {
+        let part = self.part(within, ratio);
+        let Some(damped) = damped.filter(|damped| damped.power.is_some()) else { return part };
+        let within = both(part.within, damped.within(self.from_s));
+        Late { within, rest: within, damped, ..part }
+    }
+
+    /// A sum, of which sines of one angle make less than each by itself.
+    fn sum(&self, within: Interval, ratio: Option<Ratio>, [a, b]: [&Late; 2], sign: Interval) -> Late {
+        let (mut waves, rest) = (a.waves.clone(), a.rest + sign * b.rest);
+        for (angle, scales) in &b.waves {
+            let scales = scales.map(|scale| sign * scale);
+            match waves.iter_mut().find(|(known, _)| known == angle) {
+                Some((_, sum)) => *sum = [sum[0] + scales[0], sum[1] + scales[1]],
+                None => waves.push((angle.clone(), scales)),
+            }
+        }
+        let part = self.part(within, ratio);
+        if waves.is_empty() || self.from_s == 0.0 {
+            return part;
+        }
+        let size = |[sine, cosine]: &[Interval; 2]| {
+            of(
+                Step::Unary(Unary::Sqrt),
+                Interval::point(sine.size()) * Interval::point(sine.size())
+                    + Interval::point(cosine.size()) * Interval::point(cosine.size()),
+            )
+            .high
+        };
+        let most = waves.iter().map(|(_, scales)| size(scales)).fold(0.0, |sum, size| (sum + size).next_up());
+        let swinging = rest + Interval { low: -most, high: most };
+        let within = both(part.within, Some(swinging));
+        Late { within, waves, rest, ..part }
+    }
+
+    /// The same, multiplied with a number.
+    fn scaled(part: Late, a: &Late, by: Interval) -> Late {
+        if a.waves.is_empty() {
+            return part;
+        }
+        let waves = a.waves.iter().map(|(angle, scales)| (angle.clone(), scales.map(|scale| by * scale))).collect();
+        Late { waves, rest: by * a.rest, ..part }
+    }
+}
+
+impl Damped {
+    /// |p| ≤ c tⁿ and g ≤ −r t make p exp(g) at most c tⁿ exp(−r t), which falls from n/r on.
+    fn within(&self, from_s: f64) -> Option<Interval> {
+        let (power, rest) = (self.power.as_ref().filter(|_| from_s > 0.0)?, self.rest.size());
+        let falls = -power.times(&Ratio::time().inverse()?)?.from(from_s)?.high;
+        let number = Ratio::number(BigRational::one());
+        let over = self.over.as_ref().unwrap_or(&number);
+        let n = over.degree().max(0);
+        let most = over.times(&Ratio::time().power(-i64::from(n))?)?.from(from_s)?.size();
+        if !(falls > 0.0 && falls.is_finite() && most.is_finite() && rest.is_finite()) {
+            return None;
+        }
+        let start = from_s.max(f64::from(n) / falls);
+        let size = most * rest * start.powi(n) * libm::exp(-falls * start) * (1.0 + 1e-9);
+        // What is too small for a number is not zero.
+        let size = size.max(f64::MIN_POSITIVE);
+        Some(Interval { low: -size, high: size })
+    }
+
+    fn times(&self, other: &Damped) -> Option<Damped> {
+        let joined = |a: &Option<Ratio>, b: &Option<Ratio>, f: fn(&Ratio, &Ratio) -> Option<Ratio>| match (a, b) {
+            (Some(a), Some(b)) => f(a, b).map(Some),
+            (one, other) => Some(one.clone().or_else(|| other.clone())),
+        };
+        let over = joined(&self.over, &other.over, Ratio::times)?;
+        Some(Damped { over, power: joined(&self.power, &other.power, Ratio::plus)?, rest: self.rest * other.rest })
     }
 }
 
@@ -55,53 +144,80 @@ impl Algebra for Lates {
     type Value = Late;
 
     fn number(&mut self, number: &Number) -> Late {
-        self.part(number.within(), Interval::point(0.0), number.exact().map(Ratio::number))
+        let part = self.part(number.within(), number.exact().map(Ratio::number));
+        Late { constant: true, ..part }
     }
 
     fn variable(&mut self, _: usize) -> Late {
         let within = Interval { low: self.from_s, high: f64::INFINITY };
-        Late { within, slope: Interval::point(1.0), ratio: Some(Ratio::time()) }
+        Late { within, rest: within, ..self.part(within, Some(Ratio::time())) }
     }
 
     fn unary(&mut self, function: Unary, a: Late) -> Late {
-        let (v, one) = (a.within, Interval::point(1.0));
-        let within = of(Step::Unary(function), v);
-        let outer = match function {
-            Unary::Negate => -one,
-            Unary::Sin => of(Step::Unary(Unary::Cos), v),
-            Unary::Cos => -of(Step::Unary(Unary::Sin), v),
-            Unary::Exp => within,
-            Unary::Log => one / v,
-            Unary::Sqrt => Interval::point(0.5) / within,
-            Unary::Abs => Interval { low: -1.0, high: 1.0 },
-            Unary::Tanh => one - within * within,
-            Unary::Atan => one / (one + v * v),
+        let within = of(Step::Unary(function), a.within);
+        let negated = || a.ratio.as_ref().map(Ratio::negated);
+        let ratio = match function {
+            Unary::Negate => negated(),
+            Unary::Abs if a.within.low >= 0.0 => a.ratio.clone(),
+            Unary::Abs if a.within.high <= 0.0 => negated(),
+            _ => None,
         };
-        let ratio = if function == Unary::Negate { a.ratio.as_ref().map(Ratio::negated) } else { None };
-        self.part(within, a.slope * outer, ratio)
+        let part = Late { constant: a.constant, ..self.part(within, ratio) };
+        match (function, &a.ratio) {
+            _ if a.constant => part,
+            (Unary::Negate, _) => {
+                let damped = Damped { rest: -a.damped.rest, ..a.damped.clone() };
+                Lates::scaled(Late { damped, ..part }, &a, -ONE)
+            }
+            (Unary::Exp, Some(power)) => {
+                Late { damped: Damped { over: None, power: Some(power.clone()), rest: ONE }, ..part }
+            }
+            (Unary::Sin, Some(angle)) => Late { waves: vec![(angle.clone(), [ONE, ZERO])], rest: ZERO, ..part },
+            (Unary::Cos, Some(angle)) => Late { waves: vec![(angle.clone(), [ZERO, ONE])], rest: ZERO, ..part },
+            _ => part,
+        }
     }
 
     fn binary(&mut self, function: Binary, a: Late, b: Late) -> Late {
         let (x, y) = (a.within, b.within);
         let ratios = a.ratio.as_ref().zip(b.ratio.as_ref());
-        match function {
-            Binary::Add => self.part(x + y, a.slope + b.slope, ratios.and_then(|(a, b)| a.plus(b))),
-            Binary::Subtract => self.part(x - y, a.slope - b.slope, ratios.and_then(|(a, b)| a.plus(&b.negated()))),
-            Binary::Multiply => self.part(x * y, a.slope * y + x * b.slope, ratios.and_then(|(a, b)| a.times(b))),
-            Binary::Divide => {
-                let slope = (a.slope * y - x * b.slope) / (y * y);
-                self.part(x / y, slope, ratios.and_then(|(a, b)| a.times(&b.inverse()?)))
+        let constant = a.constant && b.constant;
+        let found = match function {
+            Binary::Add => self.sum(x + y, ratios.and_then(|(a, b)| a.plus(b)), [&a, &b], ONE),
+            Binary::Subtract => self.sum(x - y, ratios.and_then(|(a, b)| a.plus(&b.negated())), [&a, &b], -ONE),
+            Binary::Multiply => {
+                let part = self.product(x * y, ratios.and_then(|(a, b)| a.times(b)), a.damped.times(&b.damped));
+                match (a.constant, b.constant) {
+                    (true, _) => Lates::scaled(part, &b, x),
+                    (_, true) => Lates::scaled(part, &a, y),
+                    _ => part,
+                }
             }
-            Binary::Min => self.part(smaller(x, y), a.slope.hull(b.slope), None),
-            Binary::Max => self.part(-smaller(-x, -y), a.slope.hull(b.slope), None),
-        }
+            Binary::Divide => {
+                let over = b.ratio.as_ref().and_then(Ratio::inverse);
+                let rest = if over.is_some() { ONE } else { ONE / y };
+                let damped = a.damped.times(&Damped { over, power: None, rest });
+                let part = self.product(x / y, ratios.and_then(|(a, b)| a.times(&b.inverse()?)), damped);
+                if b.constant { Lates::scaled(part, &a, ONE / y) } else { part }
+            }
+            Binary::Min | Binary::Max => {
+                let within = if function == Binary::Min { smaller(x, y) } else { -smaller(-x, -y) };
+                let apart = self.sum(x - y, ratios.and_then(|(a, b)| a.plus(&b.negated())), [&a, &b], -ONE).within;
+                let first = match function {
+                    Binary::Min => (apart.high <= 0.0).then_some(true).or((apart.low >= 0.0).then_some(false)),
+                    _ => (apart.low >= 0.0).then_some(true).or((apart.high <= 0.0).then_some(false)),
+                };
+                let ratio = first.and_then(|first| if first { a.ratio.clone() } else { b.ratio.clone() });
+                self.part(within, ratio)
+            }
+        };
+        Late { constant, ..found }
     }
 
     fn power(&mut self, a: Late, exponent: &Number) -> Late {
         let within = of(Step::Power(exponent.clone()), a.within);
-        let less = exponent.exact().map(|exponent| Step::Power(Number::rational(exponent - BigRational::one())));
-        let outer = less.map_or(Interval::WHOLE, |less| exponent.within() * of(less, a.within));
-        self.part(within, a.slope * outer, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?)))
+        let part = self.part(within, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?)));
+        Late { constant: a.constant, ..part }
     }
 }
 

@@ -28,6 +28,8 @@ pub(super) fn limit(formula: &Expression) -> Limit {
 struct Part {
     limit: Limit,
     ratio: Option<Ratio>,
+    /// Whether it falls as the exponential of a polynomial does, faster than any power grows.
+    fast: bool,
 }
 
 impl Part {
@@ -39,7 +41,12 @@ impl Part {
             Some(Err(false)) => Limit::Down,
             None => limit,
         };
-        Part { limit: known, ratio }
+        Part { limit: known, ratio, fast: false }
+    }
+
+    /// What falls so fast times what is a quotient of polynomials, or has a limit, falls as fast.
+    fn damped(&self, other: &Part) -> bool {
+        self.fast && (other.fast || other.ratio.is_some() || matches!(other.limit, Limit::Near(_)))
     }
 }
 
@@ -151,13 +158,27 @@ impl Algebra for Limits {
             Limit::Down => at_infinity(false),
             Limit::Unknown => Limit::Unknown,
         };
-        let ratio = if function == Unary::Negate { a.ratio.as_ref().map(Ratio::negated) } else { None };
-        Part::new(limit, ratio)
+        let negated = || a.ratio.as_ref().map(Ratio::negated);
+        let ratio = match (function, a.limit.sign()) {
+            (Unary::Negate, _) | (Unary::Abs, Some(false)) => negated(),
+            (Unary::Abs, Some(true)) => a.ratio.clone(),
+            _ => None,
+        };
+        let falls = function == Unary::Exp && a.ratio.is_some() && a.limit == Limit::Down;
+        Part { fast: falls || (function == Unary::Negate && a.fast), ..Part::new(limit, ratio) }
     }
 
     fn binary(&mut self, function: Binary, a: Part, b: Part) -> Part {
         let (x, y) = (a.limit, b.limit);
         let ratios = a.ratio.as_ref().zip(b.ratio.as_ref());
+        let fast = match function {
+            Binary::Multiply => a.damped(&b) || b.damped(&a),
+            Binary::Divide => a.fast && b.ratio.is_some(),
+            Binary::Add | Binary::Subtract | Binary::Min | Binary::Max => false,
+        };
+        if fast {
+            return Part { limit: Limit::Near(Interval::point(0.0)), ratio: None, fast };
+        }
         match function {
             Binary::Add => Part::new(x.plus(y), ratios.and_then(|(a, b)| a.plus(b))),
             Binary::Subtract => Part::new(x.plus(y.negated()), ratios.and_then(|(a, b)| a.plus(&b.negated()))),

@@ -21,7 +21,9 @@ mod proof;
 mod ratio;
 mod routh;
 mod shares;
+mod slopes;
 mod windows;
+mod zeros;
 
 use forwardstep_sim::Setup;
 use num_rational::BigRational;
@@ -29,6 +31,8 @@ use num_rational::BigRational;
 pub use exact::decimal;
 pub(crate) use motions::at_start;
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
+
+pub(crate) use zeros::vanishing;
 
 use crate::hypothesis::Subject;
 use crate::instance::designed;

@@ -3,16 +3,17 @@
 use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::Setup;
 use forwardstep_sim::reference::Desired;
-use forwardstep_sim::trajectory::{LeastNorm, Path, Trajectory};
+use forwardstep_sim::trajectory::{Path, Trajectory};
 
 use super::courses::Course;
-use super::enclosure::{Reach, enclosed, found};
+use super::enclosure::{Reach, enclosed, found, late_or_whole};
 use super::late::late;
-use super::limit::{Limit, limit};
 use super::numbers::sum;
 use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
 use super::ratio::Ratio;
+use super::slopes::{self, on_piece};
+use super::zeros::vanishing;
 use crate::kinds::start_attitude::scalar_squared;
 use crate::laws::kind_of;
 use crate::reach::reach;
@@ -50,9 +51,13 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     for (trajectory, lowest) in motions {
         // What goes through points is bounded whatever the points are.
         for course in trajectory.paths().iter().map(Course::of).filter(|course| course.formula().is_some()) {
+            let trees = slopes::derivatives(course.formula()?, order);
+            if trees.len() <= order {
+                return None;
+            }
             let size = |t: Interval| {
-                let jet = course.enclose_derivatives(order, t);
-                jet.into_iter().skip(lowest).reduce(Interval::hull).unwrap_or(Interval::point(0.0))
+                let each = trees.iter().skip(lowest).map(|tree| late_or_whole(tree, t));
+                each.reduce(Interval::hull).unwrap_or(Interval::point(0.0))
             };
             range = wider(range, found(&course.stretches(), size, setup.time.end_s, reach, |_| true)?.range);
         }
@@ -97,6 +102,18 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     }
     let enclosure = |path: &Path| -> Option<Enclosure> {
         let course = Course::of(path);
+        if let Some(formula) = course.formula() {
+            let sum = weighted(formula, &drive)?;
+            let slope = slopes::slope(&sum);
+            // What is multiplied here is rounded, and exact for a checker.
+            let enclose = |t: Interval| {
+                let within =
+                    if t.high.is_finite() { on_piece(&sum, slope.as_ref(), t) } else { late_or_whole(&sum, t) };
+                within.with_room(ROOM * within.size())
+            };
+            let stays = |within: Interval| within.size() < following.gain;
+            return found(&course.stretches(), enclose, setup.time.end_s, claim.reach(), stays);
+        }
         // As a checker adds them: each derivative by itself.
         let weighted = |t: Interval| {
             let parts = course
@@ -113,12 +130,26 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     trajectory.paths().iter().map(enclosure).collect::<Option<_>>().map(Proof::Drive)
 }
 
+/// Σ `weights[k]` · (k-th derivative) as a formula.
+fn weighted(formula: &Expression, weights: &[f64]) -> Option<Expression> {
+    let order = weights.iter().rposition(|weight| *weight != 0.0)?;
+    let trees = slopes::derivatives(formula, order);
+    let parts = trees.iter().zip(weights).filter(|(_, weight)| **weight != 0.0);
+    let scaled = |tree: &Expression, weight: f64| match weight {
+        1.0 => tree.clone(),
+        _ => Expression::number(weight) * tree.clone(),
+    };
+    (trees.len() > order).then(|| sum(parts.map(|(tree, weight)| scaled(tree, *weight))))
+}
+
 /// A time at which γ is reached clearly.
 fn instant(trajectory: &Trajectory, drive: &[f64], gain: f64, end_s: f64) -> Option<Proof> {
     let mut best = (gain, None);
     let on_run = (0..=LOOKS).map(|look| end_s * f64::from(look) / f64::from(LOOKS));
     let later = (1..=LATER).map(|look| (end_s * (1_u64 << look) as f64).round());
-    for t_s in on_run.chain(later) {
+    // Closely for some time after the run, where something may pass, and ever further apart.
+    let soon = (1..=LOOKS).map(|look| end_s * (1.0 + 9.0 * f64::from(look) / f64::from(LOOKS)));
+    for t_s in on_run.chain(soon).chain(later) {
         for (axis, path) in trajectory.paths().iter().enumerate() {
             let value: f64 = path.jet(t_s).iter().zip(drive).map(|(value, weight)| value * weight).sum();
             if value.abs() >= best.0 {
@@ -167,21 +198,9 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     match claim.answer {
         Answer::Holds => entries.iter().enumerate().find_map(for_ever).or_else(norm),
         Answer::HoldsOnHorizon => norm(),
-        Answer::Violated => vanishes(target, &entries, setup.time.end_s),
+        Answer::Violated => vanishing(target, setup.time.end_s),
         Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
-}
-
-/// That all entries of a quaternion go to zero, or a time at which its norm is a millionth of what it is at another.
-fn vanishes(target: &Trajectory, entries: &[Course<'_>], end_s: f64) -> Option<Proof> {
-    let zero = Interval::point(0.0);
-    if entries.iter().all(|entry| entry.formula().is_some_and(|formula| limit(formula) == Limit::Near(zero))) {
-        return Some(Proof::Fades);
-    }
-    let quaternion = target.quaternion(target.axes().saturating_sub(4))?;
-    let least = Some(quaternion.least_norm(end_s)).filter(LeastNorm::vanishes);
-    let found = least.or_else(|| quaternion.vanishes_later(end_s))?;
-    Some(Proof::Vanishes { at_s: Number::written(found.t_s), beside_s: Number::written(found.largest_s) })
 }
 
 /// The first stretch on which the sum of squares keeps within something that is `good`.

@@ -1,6 +1,6 @@
 //! Hypotheses that a number, or a list of classes, shows.
 
-use forwardstep_core::expression::{Expression, Number};
+use forwardstep_core::expression::{Expression, Interval, Intervals, Number};
 use forwardstep_sim::graph::strong_components;
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup};
 use num_rational::BigRational;
@@ -10,7 +10,7 @@ use super::proof::Proof;
 use crate::Answer;
 use crate::kinds::chain::{undefined_state, unmoved};
 use crate::kinds::matrix_factor::null_vector;
-use crate::surroundings::acts;
+use crate::surroundings::{acts, ends_s};
 use crate::theorems::slowest_per_s;
 
 /// A number that proves what holds.
@@ -43,9 +43,10 @@ pub(super) fn manipulability(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> 
 
 pub(super) fn pushes_end(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
-    let last_s = pushes.map(|push| push.span_s()[1]).reduce(f64::max)?;
+    let last_s = pushes.map(ends_s).reduce(f64::max)?;
     // The end is a sum of two numbers as they are written, rounded once.
-    number(claim, last_s.is_finite().then(|| Number::written(last_s.next_up())))
+    let rounded_s = if last_s.fract() == 0.0 { last_s } else { last_s.next_up() };
+    number(claim, last_s.is_finite().then(|| Number::written(rounded_s)))
 }
 
 /// The strongly connected components of the union of all graphs, sorted so that no edge leads back.
@@ -111,7 +112,11 @@ pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
                     ChainModel::Cascade(_) | ChainModel::Derivatives(_) | ChainModel::Vector(_) => None,
                 })
             };
-            small.map(Proof::SmallFactor).or_else(null).or_else(unmoved)
+            let somewhere = || {
+                let mut agents = setup.agents.iter().enumerate();
+                agents.find_map(|(index, agent)| Some(Proof::SmallFactor(index, Some(small_in(agent)?))))
+            };
+            small.map(|agent| Proof::SmallFactor(agent, None)).or_else(null).or_else(unmoved).or_else(somewhere)
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
@@ -135,6 +140,23 @@ fn matrix_of(agent: &AgentSetup) -> Option<&[Vec<Expression>]> {
         ChainModel::Vector(terms) => Some(terms.input()),
         ChainModel::Derivatives(_) | ChainModel::Cascade(_) => None,
     }
+}
+
+/// A state in which the factor of the input of a chain with one axis is below its floor: the start, or where it is zero.
+fn small_in(agent: &AgentSetup) -> Option<Vec<BigRational>> {
+    let (law, model): (&ChainLaw, &ChainModel) = (agent.law.downcast()?, agent.robot.kind.downcast()?);
+    let factor = match model {
+        ChainModel::Derivatives(terms) => terms.input(),
+        ChainModel::Cascade(terms) if terms.is_strict() => terms.input(),
+        ChainModel::Vector(_) | ChainModel::Cascade(_) => return None,
+    };
+    let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
+    let small = |state: &Vec<f64>| {
+        let within: Vec<Interval> = state.iter().map(|x| Interval::point(*x).with_room(1e-12 * x.abs())).collect();
+        state.len() >= factor.variables() && factor.fold(&mut Intervals(&within)).size() < law.floor
+    };
+    let state = [Some(start), factor.zero()].into_iter().flatten().find(small)?;
+    Some(state.into_iter().map(Number::written).collect())
 }
 
 /// Whether the factor of the input of a chain is a constant below its floor; nothing where it is no constant.

@@ -79,8 +79,8 @@ pub enum Proof {
     Reached(BigRational, usize),
     /// One pass over all states shows that the factor of the input keeps away from zero, or its smallest singular value where it is a matrix.
     FactorAway,
-    /// Witness: the factor of the input of this agent is a constant below its floor.
-    SmallFactor(usize),
+    /// Witness: the factor of the input of this agent is below its floor in this state, or in all.
+    SmallFactor(usize, Option<Vec<BigRational>>),
     /// An agent whose chain has an equation that its next state does not move, and which, from zero.
     Unmoved(usize, usize),
     /// Witness: the factor of the input of this agent is a constant matrix that takes this vector to zero.
@@ -94,12 +94,19 @@ pub enum Proof {
     LeftNull(Vec<BigRational>),
     /// Witness: every entry of a quaternion goes to zero as t → ∞.
     Fades,
-    /// Witness: a time at which the norm of a quaternion is at most a millionth of what it is at another.
+    /// Witness: a time at which all entries of a quaternion are zero.
     Vanishes {
         /// When, s.
         at_s: BigRational,
-        /// The other, s.
-        beside_s: BigRational,
+    },
+    /// Witness: an entry of a quaternion passes zero, and every other is zero for ever or a number times the same formula.
+    ChangesSign {
+        /// Which, from zero.
+        entry: usize,
+        /// When it has one sign, s.
+        from_s: BigRational,
+        /// When it has the other, s.
+        to_s: BigRational,
     },
     /// Witness: a parameter, or a length, lies outside of the bounds of its estimate, by the text of the scenario.
     Outside,

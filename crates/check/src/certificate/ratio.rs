@@ -13,7 +13,7 @@ const MOST_DEGREE: usize = 16;
 const MOST_POWER: i64 = 8;
 
 /// P/Q, by coefficients from t⁰ on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ratio {
     over: Vec<BigRational>,
     under: Vec<BigRational>,
@@ -103,19 +103,29 @@ impl Ratio {
         })
     }
 
-    /// What it keeps within from `from_s` on, where that is bounded.
+    /// What it keeps within from `from_s` > 0 on, where that is known.
     pub(super) fn from(&self, from_s: f64) -> Option<Interval> {
-        let u = Interval { low: 0.0, high: (1.0 / from_s).next_up() };
-        Some(self.at(u)).filter(|found| found.is_finite())
+        let found = self.at(Interval { low: 0.0, high: (1.0 / from_s).next_up() });
+        let degree = self.degree();
+        if degree <= 0 || !found.is_finite() {
+            return Some(found).filter(|found| found.is_finite());
+        }
+        let room = 1.0 - 1e-12;
+        Some(found * Interval { low: from_s.powi(degree) * room, high: f64::INFINITY })
     }
 
+    /// By how much the degree of P exceeds that of Q.
+    pub(super) fn degree(&self) -> i32 {
+        self.over.len() as i32 - self.under.len() as i32
+    }
+
+    /// For 1/t within an interval, divided by t to the degree where that is positive.
     fn at(&self, u: Interval) -> Interval {
-        let degree = self.over.len().max(self.under.len());
         let value = |coefficients: &[BigRational]| {
-            let padding = std::iter::repeat_n(Interval::point(0.0), degree - coefficients.len());
-            let all = coefficients.iter().map(|c| Number::rational(c.clone()).within()).chain(padding);
+            let all = coefficients.iter().map(|c| Number::rational(c.clone()).within());
             all.fold(Interval::point(0.0), |value, coefficient| value * u + coefficient)
         };
-        value(&self.over) / value(&self.under)
+        let fall = (0..-self.degree()).fold(Interval::point(1.0), |power, _| power * u);
+        value(&self.over) * fall / value(&self.under)
     }
 }

@@ -130,8 +130,18 @@ pub(crate) fn undefined_state(setup: &Setup) -> Option<(usize, Vec<f64>)> {
     let agents: Vec<usize> = (0..setup.agents.len()).collect();
     distinct_terms(setup, &agents).into_iter().find_map(|(index, _, expression)| match expression.domain() {
         Domain::Fails { at, .. } if !expression.value(&at).is_finite() => Some((index, at)),
-        Domain::Fails { .. } | Domain::Everywhere | Domain::NotShown => None,
+        Domain::Fails { at, .. } => Some((index, undefined_beside(expression, at.len())?)),
+        Domain::Everywhere | Domain::NotShown => None,
     })
+}
+
+/// A state of simple numbers in which a term has no value: where a divisor passes zero, numbers that are rounded seldom meet it.
+fn undefined_beside(expression: &Expression, states: usize) -> Option<Vec<f64>> {
+    const SIMPLE: [f64; 7] = [0.0, 1.0, -1.0, 0.5, -0.5, 2.0, -2.0];
+    let most = SIMPLE.len().checked_pow(u32::try_from(states).ok()?).filter(|most| *most <= 20_000)?;
+    let digit = |number: usize, place: usize| SIMPLE[number / SIMPLE.len().pow(place as u32) % SIMPLE.len()];
+    let state = |number: usize| (0..states).map(|place| digit(number, place)).collect::<Vec<f64>>();
+    (0..most).map(state).find(|state| !expression.value(state).is_finite())
 }
 
 fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {

@@ -1,12 +1,13 @@
 //! Theorem 7: spacecraft that follow an attitude without a measured angular velocity.
 
-use forwardstep_core::expression::{Expression, Interval};
+use forwardstep_core::expression::Interval;
 use forwardstep_core::plant;
 use forwardstep_sim::formula::BoundedFormula;
-use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::trajectory::{LeastNorm, Trajectory};
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
 
 use super::{Claim, KindCheck};
+use crate::certificate::{Proof, vanishing};
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, MotionEvidence, Named, Subject};
 use crate::surroundings::acts;
 use crate::theorem::Theorem;
@@ -78,8 +79,10 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
         return Some(MotionEvidence::EntryAway { least: away });
     }
     let seen = target.least_norm(end_s);
-    if let Some(evidence) = target.squared_norm().and_then(|square| norm_for_ever(square, seen.norm, end_s)) {
-        return Some(evidence);
+    let square = target.squared_norm().map(|square| BoundedFormula::new(square.sqrt_of(), end_s));
+    let least = square.as_ref().map_or(0.0, |norm| norm.for_ever().within.low);
+    if least > 0.0 {
+        return Some(MotionEvidence::NormAbove { least, until_s: None });
     }
     let fastest = |axis| {
         let speed = target.hull(axis, 1, Some(end_s));
@@ -87,26 +90,16 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
     };
     let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
     let shown = seen.norm - speed * 0.5 * seen.every_s;
-    let (t_s, norm) = (seen.t_s, seen.norm);
-    Some(if seen.vanishes() {
-        MotionEvidence::NormVanishes { t_s, norm }
-    } else if shown > 0.0 && target.squared_norm().is_none() {
+    let nearest = Some(seen).filter(LeastNorm::vanishes).or_else(|| target.vanishes_later(end_s)).unwrap_or(seen);
+    // What comes close to zero, but for rounding, refutes nothing: what does is a proof that others can replay.
+    Some(match (vanishing(target, end_s), square) {
+        (Some(Proof::Fades), norm) => {
+            let above = Interval { low: 0.5 * seen.norm, high: f64::INFINITY };
+            MotionEvidence::NormFades { witness: norm.and_then(|norm| norm.seen_outside(above)) }
+        }
+        (Some(_), _) => MotionEvidence::NormVanishes { t_s: nearest.t_s },
         // A curve through points.
-        MotionEvidence::NormAbove { least: shown, until_s: Some(end_s) }
-    } else if let Some(later) = target.vanishes_later(end_s) {
-        MotionEvidence::NormVanishes { t_s: later.t_s, norm: later.norm }
-    } else {
-        MotionEvidence::NormSeen { t_s, norm }
+        (None, None) if shown > 0.0 => MotionEvidence::NormAbove { least: shown, until_s: Some(end_s) },
+        (None, _) => MotionEvidence::NormSeen { t_s: nearest.t_s, norm: nearest.norm },
     })
-}
-
-/// What the square of a norm that is a formula says for all time, if anything.
-fn norm_for_ever(square: Expression, on_run: f64, end_s: f64) -> Option<MotionEvidence> {
-    let norm = BoundedFormula::new(square.sqrt_of(), end_s);
-    let found = norm.for_ever();
-    if found.within.low > 0.0 {
-        return Some(MotionEvidence::NormAbove { least: found.within.low, until_s: None });
-    }
-    let above = Interval { low: 0.5 * on_run, high: f64::INFINITY };
-    (found.reaches.low <= 0.0).then(|| MotionEvidence::NormFades { witness: norm.seen_outside(above) })
 }

@@ -59,20 +59,47 @@ fn a_singular_start_has_its_witness_whatever_carries_the_tip() {
     }
 }
 
+/// Of a spacecraft with this target what `check` answers about its quaternion, and what the checker says.
+fn quaternion(target: &str) -> (String, String) {
+    judged(
+        &changed("theorem-7", "target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}")),
+        "nonzero-quaternion",
+    )
+}
+
 #[test]
-fn an_attitude_that_fades_or_turns_over_is_refuted_by_its_limit_or_by_a_time() {
+fn an_attitude_that_fades_or_turns_over_is_refuted_by_its_limit_a_time_or_a_change_of_sign() {
     let craft =
         |target: &str| changed("theorem-7", "target.formulas = [0, 0, 0, 1]", &format!("target.formulas = {target}"));
-    violated(&craft(r#"["0.5*exp(-t)", "exp(-2*t)", 0, "1/(1+t)"]"#), "nonzero-quaternion", "fades");
-    // After the run, which ends at 60 s.
-    violated(&craft(r#"[0, 0, 0, "1 - t/90"]"#), "nonzero-quaternion", "vanishes");
-    violated(&craft(r#"[0, 0, "cos(0.02*t)", "0*t"]"#), "nonzero-quaternion", "vanishes");
-    // All entries together, and without a change of sign.
-    violated(&craft(r#"[0, "2 - t/45", "3*(1 - t/90)", "1 - t/90"]"#), "nonzero-quaternion", "vanishes");
-    violated(&craft(r#"["(1 - t/90)^2", 0, "abs(sin(0.05*(t - 90)))", 0]"#), "nonzero-quaternion", "vanishes");
+    let refuted = |target: &str, kind: &str| violated(&craft(target), "nonzero-quaternion", kind);
+    refuted(r#"["0.5*exp(-t)", "exp(-2*t)", 0, "1/(1+t)"]"#, "fades");
+    refuted(r#"[0, 0, "exp(-t)", "exp(-t)"]"#, "fades");
+    // After the run, which ends at 60 s: all entries together, and without a change of sign.
+    refuted(r#"[0, 0, 0, "1 - t/90"]"#, "vanishes");
+    refuted(r#"[0, "2 - t/45", "3*(1 - t/90)", "1 - t/90"]"#, "vanishes");
+    refuted(r#"["(1 - t/90)^2", 0, "abs(sin(0.05*(t - 90)))", 0]"#, "vanishes");
+    // At no rational time.
+    refuted(r#"[0, 0, "cos(0.02*t)", "0*t"]"#, "changes-sign");
+    refuted(r#"["-cos(0.02*t)", 0, "3*cos(0.02*t)", "cos(0.02*t)/7"]"#, "changes-sign");
     // It stays, or two entries vanish at two times.
     for apart in [r#"[0, 0, 0, "1 + 1/(1+t)"]"#, r#"[0, 0, "sin(0.02*t)", "cos(0.02*t)"]"#] {
-        assert_eq!(judged(&craft(apart), "nonzero-quaternion").0, "holds", "{apart}");
+        assert_eq!(quaternion(apart).0, "holds", "{apart}");
+    }
+}
+
+/// Two entries that pass zero a millionth of a second apart were said to vanish together.
+#[test]
+fn regress_an_attitude_that_only_comes_close_to_zero_is_not_called_violated() {
+    for close in [
+        r#"[0, 0, "sin(t)", "cos(t)*cos(t/100) + 1e-6"]"#,
+        r#"[0, "1e-12", "1 - t/90", 0]"#,
+        r#"[0, 0, "sin(0.02*t)", "sin(0.02*t) + 1e-12*cos(0.02*t)"]"#,
+    ] {
+        assert_ne!(quaternion(close).0, "violated", "{close}");
+    }
+    // Small beside what it is at other times, and an attitude all the same.
+    for meaningful in [r#"[0, "1e-6", "sin(t)", "cos(t)*cos(t/10)"]"#, r#"[0, 0, "exp(t)", "1"]"#] {
+        assert_eq!(quaternion(meaningful), ("holds".to_owned(), "accepted".to_owned()), "{meaningful}");
     }
 }
 
@@ -99,4 +126,20 @@ fn a_target_that_swings_ever_wider_is_refuted() {
     for target in ["sin(t)", "sin(t)/(1+t)", "t*sin(t)*exp(-t)"] {
         assert_ne!(judged(&masses(target), "bounded-target").0, "violated", "{target}");
     }
+}
+
+/// What has a value in no neighbourhood of rounded numbers, and what is too small where the run begins.
+#[test]
+fn terms_and_factors_of_chains_are_refuted_by_a_state() {
+    let chain = |terms: &str| {
+        format!(
+            "format = 2\ntime.end_s = 20\n[[agents]]\nname = \"c\"\nrobot.chain = {{ order = 2, {terms} }}\nstart.position = [0.5]\n\
+             target.formulas = [\"sin(t)\"]\n[reference.tracking]\nroots_per_s = [1, 2]\n[law.linearising]\n"
+        )
+    };
+    violated(&chain("chi = \"1/(1 + x*dx)\""), "defined-terms", "no-value");
+    violated(&chain("psi = \"0.0005 + 0.0002*sin(x)\""), "input-factor", "factor");
+    // Above one a power of what comes to zero has a slope there.
+    let smooth = judged(&chain("chi = \"abs(x)^1.5\""), "defined-terms");
+    assert_eq!(smooth, ("holds".to_owned(), "accepted".to_owned()));
 }

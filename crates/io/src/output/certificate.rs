@@ -5,6 +5,7 @@
 
 use forwardstep_check::certificate::{Certificate, Enclosure, Matrix, Proof, Range, Statement, TreeWindow, decimal};
 use forwardstep_sim::Setup;
+use forwardstep_sim::graph::Edge;
 use num_rational::BigRational;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
@@ -30,11 +31,28 @@ pub fn certificate_document(scenario: &Scenario, version: &str, certificate: &Ce
         "theorem": certificate.theorem,
         "hypotheses": certificate.statements.iter().map(|statement| names.statement(statement)).collect::<Vec<_>>(),
     });
+    let drawn = drawn_edges(scenario, &names);
+    if let (false, Value::Object(fields)) = (drawn.is_empty(), &mut document) {
+        fields.insert("given_edges".into(), drawn.into());
+    }
     if let (Some(shares), Value::Object(fields)) = (&certificate.influence, &mut document) {
         let shares = shares.iter().enumerate().map(|(agent, share)| json!([names.of(agent), decimal(share)]));
         fields.insert("agreement".into(), json!({ "influence": shares.collect::<Vec<_>>() }));
     }
     document
+}
+
+/// The edges of every graph that was drawn, in the order of the scenario.
+fn drawn_edges(scenario: &Scenario, names: &Names<'_>) -> Vec<Value> {
+    let text: toml::Table = scenario.source.text().parse().unwrap_or_default();
+    let network = text.get("network");
+    let listed = network.and_then(|network| network.get("phases")).and_then(toml::Value::as_array);
+    let graphs: Vec<&toml::Value> =
+        listed.map_or_else(|| network.into_iter().collect(), |phases| phases.iter().collect());
+    let random = |graph: &toml::Value| graph.get("edges").is_some_and(|edges| edges.get("random").is_some());
+    let pairs = |edges: &[Edge]| edges.iter().map(|edge| json!([names.of(edge.from), names.of(edge.to)])).collect();
+    let each = graphs.into_iter().zip(&scenario.setup.network.schedule.graphs);
+    each.filter(|(graph, _)| random(graph)).map(|(_, edges)| pairs(edges)).map(Value::Array).collect()
 }
 
 /// In hexadecimal.
@@ -119,7 +137,10 @@ impl Names<'_> {
             }
             Proof::Drive(bounds) => json!({ "kind": "bounds", "bounds": self.enclosures(bounds) }),
             Proof::Reached(t_s, axis) => json!({ "kind": "instant", "t_s": decimal(t_s), "axis": axis + 1 }),
-            Proof::SmallFactor(agent) => json!({ "kind": "factor", "agent": self.of(*agent) }),
+            Proof::SmallFactor(agent, None) => json!({ "kind": "factor", "agent": self.of(*agent) }),
+            Proof::SmallFactor(agent, Some(state)) => {
+                json!({ "kind": "factor", "agent": self.of(*agent), "state": numbers(state) })
+            }
             Proof::Unmoved(agent, equation) => {
                 json!({ "kind": "unmoved", "agent": self.of(*agent), "equation": equation + 1 })
             }
@@ -130,8 +151,9 @@ impl Names<'_> {
             Proof::HalfTurn => json!({ "kind": "half-turn" }),
             Proof::LeftNull(vector) => json!({ "kind": "left-null", "vector": numbers(vector) }),
             Proof::Fades => json!({ "kind": "fades" }),
-            Proof::Vanishes { at_s, beside_s } => {
-                json!({ "kind": "vanishes", "at_s": decimal(at_s), "beside_s": decimal(beside_s) })
+            Proof::Vanishes { at_s } => json!({ "kind": "vanishes", "at_s": decimal(at_s) }),
+            Proof::ChangesSign { entry, from_s, to_s } => {
+                json!({ "kind": "changes-sign", "entry": entry + 1, "from_s": decimal(from_s), "to_s": decimal(to_s) })
             }
             Proof::Outside => json!({ "kind": "outside" }),
             Proof::FactorAway => json!({ "kind": "factor-away" }),

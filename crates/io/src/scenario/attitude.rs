@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use forwardstep_core::Scalar;
 use forwardstep_core::attitude::{Quaternion, angle, difference, normalized};
 use forwardstep_sim::Start;
-use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::trajectory::{LeastNorm, Trajectory};
 
 use super::at::At;
 use super::attitude_file::{AttitudeStartFile, TurnFile};
@@ -46,10 +46,14 @@ pub(super) fn direction(axis: &At<[f64; 3]>) -> Result<Quaternion, Fault> {
     Ok(normalized([x, y, z, 0.0]))
 }
 
-/// Refuses a target that is no attitude at some time.
+/// Refuses a target that is no attitude at some time, as far as the numbers of a run tell.
 pub(super) fn never_zero<T>(place: &At<T>, target: &Trajectory, end_s: f64) -> Result<(), Fault> {
     let nearest = target.least_norm(end_s);
-    if nearest.vanishes() { Err(fault(place, SystemProblem::NoAttitude { t_s: nearest.t_s })) } else { Ok(()) }
+    if !nearest.vanishes() {
+        return Ok(());
+    }
+    let LeastNorm { t_s, norm, beside, every_s } = nearest;
+    Err(fault(place, SystemProblem::NoAttitude { t_s, norm, beside, every_s }))
 }
 
 /// Of the two quaternions of the attitude at the start, takes the one that is asked for: the law leads to Δq_o = 1, by the short

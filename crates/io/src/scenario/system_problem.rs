@@ -98,11 +98,17 @@ pub enum SystemProblem {
     /// A formula with kinks that cannot be landed on.
     #[error("a motion must be smooth between kinks that are known, but {0}")]
     Kinks(KinkError),
-    /// A desired attitude that is zero.
-    #[error("this is no attitude at {} s: its four entries are zero there", number(*.t_s))]
+    /// A desired attitude that is zero, as far as numbers tell.
+    #[error("this is no attitude at {} s: {}", number(*.t_s), length(*.norm, *.beside, *.every_s))]
     NoAttitude {
         /// When, s.
         t_s: f64,
+        /// How long it is then.
+        norm: f64,
+        /// How long it is beside it.
+        beside: f64,
+        /// How far beside it, s.
+        every_s: f64,
     },
     /// A pose for what has none.
     #[error("`pose` is for an end-effector whose position and orientation follow the target")]
@@ -202,4 +208,13 @@ impl SystemProblem {
         };
         Some(text)
     }
+}
+
+/// How long a quaternion is that is too short to tell a direction.
+fn length(norm: f64, beside: f64, every_s: f64) -> String {
+    if norm == 0.0 {
+        return "its four entries are zero there".into();
+    }
+    let every_s = number(every_s);
+    format!("its length comes to {norm:.1e} there, of {beside:.1e} {every_s} s beside it, and no direction can be told")
 }

@@ -15,19 +15,17 @@ pub struct LeastNorm {
     pub t_s: f64,
     /// Its norm there.
     pub norm: f64,
-    /// The largest norm that was seen.
-    pub largest: f64,
-    /// When that was, s.
-    pub largest_s: f64,
+    /// The larger of its norms a look earlier and a look later.
+    pub beside: f64,
     /// How far apart the looks are, s.
     pub every_s: f64,
 }
 
 impl LeastNorm {
-    /// Whether this is zero, as far as a direction can be told: less than a millionth of the largest, where a direction that turns
-    /// with the motion turns a million times as fast.
+    /// Whether it passes zero here, as far as rounded numbers tell: a thousand-millionth of what it is beside. What only comes close to
+    /// zero, or is small for long, has a direction all the same. It is no proof.
     pub fn vanishes(&self) -> bool {
-        self.norm <= 1e-6 * self.largest
+        self.norm <= 1e-9 * self.beside
     }
 }
 
@@ -41,21 +39,21 @@ impl Trajectory {
         self.paths.iter().map(square).sum::<f64>().sqrt()
     }
 
+    /// The norm at a time and beside it.
+    fn norm_around(&self, t_s: f64, every_s: f64) -> LeastNorm {
+        let beside = self.norm((t_s - every_s).max(0.0)).max(self.norm(t_s + every_s));
+        LeastNorm { t_s, norm: self.norm(t_s), beside, every_s }
+    }
+
     /// Looks at the norm of all axes together, 2001 times from 0 to `end_s`, and closer where it may pass zero between two looks: the
     /// first such time is what is found, where there is one.
     pub fn least_norm(&self, end_s: f64) -> LeastNorm {
         let every_s = end_s / f64::from(PARTS);
         let looks: Vec<[f64; 2]> =
             (0..=PARTS).map(|k| end_s * f64::from(k) / f64::from(PARTS)).map(|t_s| [t_s, self.norm(t_s)]).collect();
-        let mut seen = LeastNorm { t_s: 0.0, norm: f64::INFINITY, largest: 0.0, largest_s: 0.0, every_s };
-        for &[t_s, norm] in &looks {
-            if norm > seen.largest {
-                seen = LeastNorm { largest: norm, largest_s: t_s, ..seen };
-            }
-            if norm < seen.norm {
-                seen = LeastNorm { t_s, norm, ..seen };
-            }
-        }
+        let smaller = |least: [f64; 2], look: &[f64; 2]| if look[1] < least[1] { *look } else { least };
+        let [least_s, _] = looks.iter().fold([0.0, f64::INFINITY], smaller);
+        let mut seen = self.norm_around(least_s, every_s);
         for around in looks.windows(3) {
             let [[left, before], [_, here], [right, after]] = [around[0], around[1], around[2]];
             if seen.vanishes() && seen.t_s <= right {
@@ -64,8 +62,7 @@ impl Trajectory {
             // It falls on no further than it fell, or than it will rise: less would be a corner.
             let reaches = here - (before - here).max(after - here);
             if here <= before && here <= after && reaches <= 0.0 {
-                let t_s = self.least_between(left, right);
-                let closer = LeastNorm { t_s, norm: self.norm(t_s), ..seen };
+                let closer = self.norm_around(self.least_between(left, right), every_s);
                 if closer.vanishes() {
                     return closer;
                 }
@@ -78,16 +75,12 @@ impl Trajectory {
     /// Where the norm vanishes after `end_s`, as far as it is found by looking for its minima, without proof.
     pub fn vanishes_later(&self, end_s: f64) -> Option<LeastNorm> {
         let times_s: Vec<f64> = times_s(end_s).filter(|t_s| *t_s >= end_s && *t_s <= MOST_LATER * end_s).collect();
-        let norms = times_s.iter().map(|t_s| (self.norm(*t_s), *t_s));
-        let (largest, largest_s) = norms.max_by(|(one, _), (other, _)| one.total_cmp(other))?;
         times_s.windows(3).find_map(|around| {
             let [left, middle, right] = [around[0], around[1], around[2]];
             if self.norm(middle) > self.norm(left) || self.norm(middle) > self.norm(right) {
                 return None;
             }
-            let t_s = self.least_between(left, right);
-            let found = LeastNorm { t_s, norm: self.norm(t_s), largest, largest_s, every_s: right - left };
-            found.vanishes().then_some(found)
+            Some(self.norm_around(self.least_between(left, right), right - left)).filter(LeastNorm::vanishes)
         })
     }
 

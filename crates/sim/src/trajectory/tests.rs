@@ -219,6 +219,10 @@ fn a_norm_that_passes_zero_between_two_looks_vanishes() {
     }
     let above = of((t().cos_of() * t().cos_of() + 1e-4).sqrt_of()).least_norm(60.0);
     assert!(!above.vanishes() && (above.norm - 0.01).abs() < 1e-3, "{above:?}");
+    // Close to zero, and small for long.
+    let close = of((t().cos_of() * t().cos_of() + 1e-12).sqrt_of()).least_norm(60.0);
+    assert!(!close.vanishes() && close.norm < 1e-5, "{close:?}");
+    assert!(!of((-t()).exp_of()).least_norm(60.0).vanishes());
     let nothing = of(Expression::number(0.0)).least_norm(60.0);
     assert_eq!((nothing.t_s, nothing.vanishes()), (0.0, true));
     let growing = of(t() + 0.5).least_norm(60.0);

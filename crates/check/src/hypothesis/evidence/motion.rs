@@ -35,12 +35,10 @@ pub enum MotionEvidence {
         /// The norm.
         norm: f64,
     },
-    /// A norm that is zero, but for rounding.
+    /// All entries of a quaternion are shown to come to zero together.
     NormVanishes {
-        /// When, s.
+        /// When, s, as far as a number that is rounded says.
         t_s: f64,
-        /// The norm.
-        norm: f64,
     },
 }
 
@@ -81,9 +79,10 @@ impl MotionEvidence {
             MotionEvidence::Derivatives(_)
             | MotionEvidence::EntryAway { .. }
             | MotionEvidence::NormFades { .. }
+            | MotionEvidence::NormVanishes { .. }
             | MotionEvidence::NormAbove { until_s: None, .. } => Rigour::Enclosed,
             MotionEvidence::NormAbove { until_s: Some(_), .. } => Rigour::Computed,
-            MotionEvidence::NormSeen { .. } | MotionEvidence::NormVanishes { .. } => Rigour::Sampled,
+            MotionEvidence::NormSeen { .. } => Rigour::Sampled,
         }
     }
 }

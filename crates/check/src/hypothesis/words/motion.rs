@@ -32,7 +32,7 @@ pub(super) fn words(evidence: &MotionEvidence) -> String {
         MotionEvidence::NormSeen { t_s, norm } => {
             format!("at {} s its norm is {}, and no bound above zero could be shown", rounded(*t_s), rounded(*norm))
         }
-        MotionEvidence::NormVanishes { t_s, norm } => format!("at {} s its norm is {norm}", rounded(*t_s)),
+        MotionEvidence::NormVanishes { t_s } => format!("its entries are zero together at {} s", rounded(*t_s)),
     }
 }
 

@@ -1,0 +1,138 @@
+//! Derivatives of formulas as formulas, by the rules that a checker has: enclosed by its rules they tell what it will find.
+
+use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Unary};
+use num_rational::BigRational;
+use num_traits::{One, Zero};
+
+/// A formula and its derivative by t; `None` where it has kinks.
+#[derive(Clone, Debug)]
+struct Slope {
+    value: Expression,
+    slope: Option<Expression>,
+}
+
+/// The derivative of a formula; `None` where it has kinks.
+pub(super) fn slope(formula: &Expression) -> Option<Expression> {
+    formula.fold(&mut Slopes).slope
+}
+
+/// A formula and its derivatives up to `order`; fewer where there are kinks.
+pub(super) fn derivatives(formula: &Expression, order: usize) -> Vec<Expression> {
+    std::iter::successors(Some(formula.clone()), slope).take(order + 1).collect()
+}
+
+/// What a formula keeps within on a bounded stretch of time: by one pass, and from the middle on by the slope.
+pub(super) fn on_piece(formula: &Expression, slope: Option<&Expression>, t_s: Interval) -> Interval {
+    let plain = formula.enclose(t_s);
+    let Some(slope) = slope else { return plain };
+    let middle = 0.5 * (t_s.low + t_s.high);
+    let away = (t_s.high - middle).max(middle - t_s.low).next_up();
+    let straight = formula.enclose(Interval::point(middle)) + slope.enclose(t_s) * Interval { low: -away, high: away };
+    let both = Interval { low: plain.low.max(straight.low), high: plain.high.min(straight.high) };
+    if both.low <= both.high { both } else { plain }
+}
+
+/// The algebra of derivatives.
+struct Slopes;
+
+fn number(value: f64) -> Expression {
+    Expression::number(value)
+}
+
+fn is(formula: &Expression, value: f64) -> bool {
+    *formula == number(value)
+}
+
+fn plus(a: Expression, b: Expression) -> Expression {
+    match () {
+        () if is(&a, 0.0) => b,
+        () if is(&b, 0.0) => a,
+        () => a + b,
+    }
+}
+
+fn times(a: Expression, b: Expression) -> Expression {
+    match () {
+        () if is(&a, 0.0) || is(&b, 0.0) => number(0.0),
+        () if is(&a, 1.0) => b,
+        () if is(&b, 1.0) => a,
+        () => a * b,
+    }
+}
+
+fn negated(a: Expression) -> Expression {
+    if is(&a, 0.0) { a } else { -a }
+}
+
+impl Algebra for Slopes {
+    type Value = Slope;
+
+    fn number(&mut self, number_: &Number) -> Slope {
+        Slope { value: Expression::number(number_.clone()), slope: Some(number(0.0)) }
+    }
+
+    fn variable(&mut self, index: usize) -> Slope {
+        Slope { value: Expression::variable(index), slope: Some(number(1.0)) }
+    }
+
+    fn unary(&mut self, function: Unary, a: Slope) -> Slope {
+        let Slope { value: inner, slope } = a;
+        let a = || inner.clone();
+        let (value, outer) = match function {
+            Unary::Negate => (-a(), Some(number(-1.0))),
+            Unary::Sin => (a().sin_of(), Some(a().cos_of())),
+            Unary::Cos => (a().cos_of(), Some(-a().sin_of())),
+            Unary::Exp => (a().exp_of(), Some(a().exp_of())),
+            Unary::Log => (a().log_of(), Some(number(1.0) / a())),
+            Unary::Sqrt => (a().sqrt_of(), Some(number(0.5) / a().sqrt_of())),
+            Unary::Abs => (a().abs_of(), None),
+            Unary::Tanh => (a().tanh_of(), Some(number(1.0) - a().tanh_of().power(2.0))),
+            Unary::Atan => (a().atan_of(), Some(number(1.0) / (number(1.0) + a().power(2.0)))),
+        };
+        let constant = slope.as_ref().is_some_and(|slope| is(slope, 0.0));
+        let slope = if constant { slope } else { slope.zip(outer).map(|(slope, outer)| times(slope, outer)) };
+        Slope { value, slope }
+    }
+
+    fn binary(&mut self, function: Binary, a: Slope, b: Slope) -> Slope {
+        let (x, y) = (|| a.value.clone(), || b.value.clone());
+        let value = match function {
+            Binary::Add => x() + y(),
+            Binary::Subtract => x() - y(),
+            Binary::Multiply => x() * y(),
+            Binary::Divide => x() / y(),
+            Binary::Min => x().smaller(y()),
+            Binary::Max => x().larger(y()),
+        };
+        let slope = a.slope.clone().zip(b.slope.clone()).and_then(|(da, db)| match function {
+            Binary::Add => Some(plus(da, db)),
+            Binary::Subtract => Some(plus(da, negated(db))),
+            Binary::Multiply => Some(plus(times(da, y()), times(x(), db))),
+            Binary::Divide => {
+                let first = if is(&da, 0.0) { da } else { da / y() };
+                Some(plus(first, negated(times(x(), times(db, y().power(-2.0))))))
+            }
+            Binary::Min | Binary::Max if is(&da, 0.0) && is(&db, 0.0) => Some(number(0.0)),
+            Binary::Min | Binary::Max => None,
+        });
+        Slope { value, slope }
+    }
+
+    fn power(&mut self, a: Slope, exponent: &Number) -> Slope {
+        let value = a.value.clone().power(exponent.clone());
+        let slope = a.slope.zip(exponent.exact()).map(|(slope, exponent)| {
+            let one = BigRational::one();
+            let less = &exponent - &one;
+            let outer = match () {
+                () if less.is_zero() => number(1.0),
+                () if less.is_one() => times(number(2.0), a.value),
+                () => {
+                    let factor = Expression::number(Number::rational(exponent));
+                    times(factor, a.value.power(Number::rational(less)))
+                }
+            };
+            times(slope, outer)
+        });
+        Slope { value, slope }
+    }
+}

@@ -1,0 +1,149 @@
+//! Formulas as weights, delays, leaders and pushes: what is claimed of them is shown, and no claim is rejected.
+
+use super::{RING, judged, masses};
+
+fn accepted(scenario: &str, id: &str, answer: &str) {
+    assert_eq!(judged(scenario, id), (answer.to_owned(), "accepted".to_owned()), "{id}: {scenario}");
+}
+
+fn weighed(weight: &str) -> String {
+    masses(&format!("weight = \"{weight}\"\ndelay.constant_s = 0.1\n{RING}"))
+}
+
+fn delayed(delay: &str) -> String {
+    masses(&format!("delay.formula_s = \"{delay}\"\n{RING}"))
+}
+
+/// Two masses that follow a leader under (108); `motion` is what stands under its key.
+fn led(motion: &str, gain: &str) -> String {
+    let text = masses("edges = [[\"leader\", \"m-1\"], [\"m-1\", \"m-2\"], [\"m-2\", \"m-3\"]]");
+    let (from, to) = (text.find("[reference").unwrap(), text.find("[network]").unwrap());
+    let design = format!("[reference.leader]\ndesign = \"continuous\"\nroots_per_s = [1.0]\ngain = {gain}\n");
+    format!("{}[leader]\nmotion.{motion}\n{design}{}", &text[..from], &text[to..])
+}
+
+/// What has a limit, or is made of parts that are uniformly continuous, is so itself.
+#[test]
+fn what_settles_or_is_made_of_steady_parts_is_certified_for_ever() {
+    for delay in [
+        "min(sqrt(t), 1)",
+        "min(sqrt(t), abs(sin(t)))",
+        "0.3*exp(-t^2)",
+        "0.3 + 0.1*sin(t)/(1 + t)",
+        "t/(1 + abs(t))",
+        "abs(1 - t)/(1 + t)",
+        "t*exp(-t)",
+    ] {
+        accepted(&delayed(delay), "bounded-delays", "holds");
+    }
+    for weight in ["1 + 0.9*tanh(t^2)", "1 + t*exp(-t)", "1 + abs(1 - t)/(1 + t)"] {
+        accepted(&weighed(weight), "bounded-weights", "holds");
+    }
+}
+
+#[test]
+fn delays_that_swing_ever_wider_are_refuted() {
+    for delay in ["abs(t*sin(t))", "abs(t*cos(t))", "t*abs(sin(t))"] {
+        accepted(&delayed(delay), "bounded-delays", "violated");
+    }
+}
+
+/// A constant may be irrational: what runs is the double next to it.
+#[test]
+fn constants_that_are_not_rational_are_certified() {
+    for weight in ["sqrt(2)", "pi", "0.5*pi", "2^0.5", "exp(1)"] {
+        accepted(&weighed(weight), "spanning-tree", "holds");
+        accepted(&weighed(weight), "agreement", "holds");
+    }
+    for delay in ["cos(0.3)", "sqrt(2)/10", "exp(-1)"] {
+        accepted(&delayed(delay), "bounded-delays", "holds");
+    }
+}
+
+#[test]
+fn leaders_are_certified_up_to_the_gain_that_they_need() {
+    for (motion, gain) in
+        [("atan(t)", "2"), ("atan(2*t)", "5"), ("1/(1 + t^2)", "5"), ("sin(t)", "1.415"), ("t*exp(-t)", "4")]
+    {
+        let text = led(&format!("formulas = [\"{motion}\"]"), gain);
+        accepted(&text, "bounded-leader", "holds");
+        accepted(&text, "sign-gain", "holds");
+    }
+    let waves =
+        "sinusoids = [{ waves = [{ amplitude = 1, rad_per_s = 1 }, { amplitude = 1, rad_per_s = 1.41421356 }] }]";
+    accepted(&led(waves, "4"), "sign-gain", "holds");
+    // It passes long after the run.
+    accepted(&led("formulas = [\"tanh(t - 50)\"]", "1.3"), "sign-gain", "violated");
+}
+
+#[test]
+fn pushes_that_come_to_zero_have_ended() {
+    for effort in ["\"max(0, 1 - t)\"", "0"] {
+        let text = format!("{}\n[[external_wrenches]]\non = [\"m\"]\nby.effort = [{effort}]\n", masses(RING));
+        accepted(&text, "pushes-end", "holds");
+    }
+}
+
+/// The edges are given in the certificate, and held against the rule.
+#[test]
+fn random_graphs_are_certified_by_the_edges_that_were_drawn() {
+    let text = masses("edges.random = { in_degree = 1, seed = 3 }").replace("count = 3", "count = 5");
+    let text = text.replace("[[0.0], [1.0], [2.0]]", "[[0.0], [1.0], [2.0], [3.0], [4.0]]");
+    for degree in ["2", "3"] {
+        let text = text.replace("in_degree = 1", &format!("in_degree = {degree}"));
+        accepted(&text, "spanning-tree", "holds");
+        accepted(&text, "agreement", "holds");
+    }
+}
+
+/// A generator of numbers that are the same everywhere.
+struct Draws(u64);
+
+impl Draws {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % end as u64) as usize
+    }
+
+    fn of<'a>(&mut self, list: &[&'a str]) -> &'a str {
+        list[self.below(list.len())]
+    }
+
+    fn formula(&mut self, depth: usize) -> String {
+        if depth == 0 {
+            let leaf = self.of(&["t", "0.5", "2", "1", "sin(t)", "exp(-t)", "t/20", "cos(3*t)", "0.1", "sqrt(2)"]);
+            return leaf.to_owned();
+        }
+        let a = self.formula(depth - 1);
+        match self.below(9) {
+            0 => format!("({a} + {})", self.formula(depth - 1)),
+            1 => format!("({a} - {})", self.formula(depth - 1)),
+            2 | 3 => format!("({a})*({})", self.formula(depth - 1)),
+            4 => format!("({a})/(1 + abs({}))", self.formula(depth - 1)),
+            5 => format!("{}({a}, {})", self.of(&["min", "max"]), self.formula(depth - 1)),
+            6 => format!("({a})^2"),
+            _ => format!("{}({a})", self.of(&["sin", "cos", "tanh", "atan", "abs"])),
+        }
+    }
+}
+
+#[test]
+fn prop_no_claim_about_drawn_formulas_is_rejected() {
+    let mut draws = Draws(1);
+    let mut claims = 0;
+    for case in 0..60 {
+        let depth = 1 + case % 3;
+        let formula = draws.formula(depth);
+        let (text, id) = match case % 4 {
+            0 => (weighed(&format!("0.6 + 0.5*tanh({formula})")), "bounded-weights"),
+            1 => (delayed(&format!("abs({formula})")), "bounded-delays"),
+            2 => (delayed(&format!("0.1 + 0.1*sin({formula})")), "bounded-delays"),
+            _ => (led(&format!("formulas = [\"{formula}\"]"), "3"), "sign-gain"),
+        };
+        // What cannot be run is refused on reading.
+        if let Some((answer, _)) = super::judged_if_read(&text, id) {
+            claims += usize::from(answer == "holds" || answer == "violated");
+        }
+    }
+    assert!(claims > 15, "{claims}");
+}
