@@ -25,6 +25,7 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod certificate;
+mod claim;
 mod comparison;
 mod conclusion;
 mod csv;

@@ -93,6 +93,7 @@ impl<'f> Journal<'f> {
             self.frame_rows(&mut bytes);
             return self.append(&bytes);
         }
+        self.folder.ready()?;
         let head = serde_json::to_vec(&self.head()).map_err(|error| self.unencodable(error.into()))?;
         bytes.extend(opening());
         self.frame_text(&mut bytes, HEAD, &head)?;
