@@ -54,7 +54,8 @@ pub(super) fn execute(
     console: &mut Console,
 ) -> Result<Status, Status> {
     // Before the run, so that no work is lost to a folder that cannot be written to.
-    let folder = RunFolder::create(path, options.force).map_err(refused)?;
+    // What an earlier run wrote is read for that, which takes long where it is large.
+    let folder = stop.at_once(|| RunFolder::create(path, options.force)).map_err(refused)?;
     show(scenario, promise, console);
     let (setup, mut bar) = (&scenario.setup, Bar::new());
     let predicts = options.predict || predicts_quickly(setup);

@@ -51,8 +51,8 @@ pub enum OutputError {
         /// What it is called now, where the system tells.
         now: Option<PathBuf>,
     },
-    /// Files of an earlier run could not be replaced: something stands under their names that is no file of a run.
-    #[error("{} is {found}, which a run cannot replace", shown(path))]
+    /// Something stands where a file of the run or a folder for some has to be.
+    #[error("{} is {found}, where a run has to write", shown(path))]
     InTheWay {
         /// What stands there.
         path: PathBuf,

@@ -103,6 +103,7 @@ impl RunFolder {
             }
             may_be_replaced(path)?;
         }
+        in_the_way(path, FILES.into_iter().chain([JOURNAL, PAGE, DOCUMENT]))?;
         folder.probe()?;
         Ok(folder)
     }
@@ -117,6 +118,10 @@ impl RunFolder {
             return Err(OutputError::NotAFolder { path });
         }
         let folder = RunFolder { claim: Claim::of(&path)?, path, made: Vec::new(), disk: Arc::new(SystemDisk) };
+        in_the_way(
+            &folder.path,
+            FILES.into_iter().filter(|name| name.starts_with("plots/") || *name == "report.html"),
+        )?;
         folder.probe()?;
         Ok(folder)
     }
@@ -225,6 +230,27 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
     Ok(true)
 }
 
+/// Refuses where something stands under the names of files that no file can take the place of, so that the run does not fail at its end:
+/// folders, and files where a folder has to be.
+fn in_the_way<'n>(path: &Path, names: impl Iterator<Item = &'n str>) -> Result<(), OutputError> {
+    let way = |path: PathBuf, found: &'static str| Err(OutputError::InTheWay { path, found });
+    for name in names {
+        let (above, file) = name.rsplit_once('/').map_or(("", name), |(above, file)| (above, file));
+        let above = path.join(above);
+        if above.metadata().map_or_else(|_| above.is_symlink(), |found| !found.is_dir()) {
+            return way(above, "no folder");
+        }
+        for name in [file.to_owned(), format!(".{file}.partial")] {
+            let file = above.join(name);
+            // The file takes the place of a link, not of what that leads to.
+            if file.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+                return way(file, "a folder");
+            }
+        }
+    }
+    Ok(())
+}
+
 pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
     let path = path.to_owned();
     move |source| OutputError::Io { action, path, source }
@@ -237,12 +263,12 @@ pub(crate) struct Staging<'f> {
 }
 
 impl Staging<'_> {
-    /// Writes one file under its temporary name, to the disk; its digest.
+    /// Writes one file under its temporary name, to the disk.
     pub(crate) fn write(
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
-    ) -> Result<blake3::Hash, OutputError> {
+    ) -> Result<Written, OutputError> {
         self.folder.ready()?;
         let (disk, path) = (self.folder.disk(), self.folder.path.join(name));
         let partial = self.folder.partial(name);
@@ -261,13 +287,13 @@ impl Staging<'_> {
             (None, FillError::Encode(reason)) => OutputError::Encode { path, reason },
         };
         match filled {
-            Ok(()) => Ok(staged.digest.finalize()),
+            Ok(()) => Ok(Written { digest: staged.digest.finalize(), bytes: staged.digest.count() }),
             Err(error) => Err(failed(error)),
         }
     }
 
     /// Writes a text.
-    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<blake3::Hash, OutputError> {
+    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<Written, OutputError> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
@@ -330,6 +356,12 @@ impl Drop for Staging<'_> {
             self.folder.remove_empty_above(name);
         }
     }
+}
+
+/// What was written.
+pub(crate) struct Written {
+    pub(crate) digest: blake3::Hash,
+    pub(crate) bytes: u64,
 }
 
 /// Why a file could not be filled.
