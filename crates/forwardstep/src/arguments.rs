@@ -15,6 +15,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use clap_complete::engine::ArgValueCompleter;
 use forwardstep_check::Id;
+use forwardstep_io::shown;
 use thiserror::Error;
 
 /// Simulate and check networks of robots under forwardstepping control. Without a command, runs six arms.
@@ -249,7 +250,7 @@ pub(crate) enum LockError {
     #[error("a lock is written JOINT=VALUE, such as wrist_3_joint=0.5")]
     Form,
     /// The value is not a number.
-    #[error("`{0}` is not a number; give rad or m")]
+    #[error("`{}` is not a number; give rad or m", shown(.0))]
     NotANumber(String),
 }
 

@@ -10,11 +10,13 @@ use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
 
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
-use forwardstep::io::{breaks_lines, shown, steers_terminals};
+use forwardstep::io::{breaks_lines, is_invisible, one_line, shown, steers_terminals};
 use miette::{Diagnostic, MietteHandlerOpts, ReportHandler};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter};
 
+pub(crate) use crate::mistake::Plain;
+use crate::mistake::Told;
 use crate::status::Status;
 
 /// Green, for what holds.
@@ -68,7 +70,10 @@ impl Console {
 
     /// Writes a JSON document, whose strings have escapes of their own.
     pub(crate) fn json(&mut self, document: impl fmt::Display) {
-        self.verbatim(harmless(&format!("{document}\n"), |c| format!("\\u{:04x}", u32::from(c))));
+        self.verbatim(harmless(&format!("{document}\n"), |c| {
+            // Characters beyond the first 65536 have two escapes there.
+            c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect()
+        }));
     }
 
     /// Writes the text of a file as it is, which a reader will ask for again.
@@ -92,7 +97,7 @@ impl Console {
 
 /// Explains a mistake on standard error.
 pub(crate) fn complain(mistake: &dyn Diagnostic) -> Status {
-    let said = explained(mistake, width_of(&io::stderr()), io::stderr().is_terminal());
+    let said = explained(&Told(mistake), width_of(&io::stderr()), io::stderr().is_terminal());
     // A closed standard error leaves only the exit status to tell.
     let _ = writeln!(io::stderr(), "{}", harmless(&said, |c| c.escape_debug().to_string()));
     Status::BadInput
@@ -196,13 +201,21 @@ pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
     let mut said = answer.render().ansi().to_string();
     for argument in arguments.iter().map(|argument| argument.to_string_lossy()).filter(|a| a.contains(breaks_lines)) {
         said = said.replace(&*argument, &shown(&*argument).to_string());
+        // Of `--name=value` and `joint=value` the value alone may be repeated.
+        for (at, _) in argument.match_indices('=') {
+            let value = &argument[at + 1..];
+            if value.contains(breaks_lines) {
+                said = said.replace(value, &shown(value).to_string());
+            }
+        }
     }
     let _ = write!(AutoStream::auto(io::stderr()), "{}", harmless(&said, |c| c.escape_debug().to_string()));
 }
 
 /// Says one sentence on standard error.
 pub(crate) fn remark(sentence: impl fmt::Display) {
-    let sentence = harmless(&sentence.to_string(), |c| c.escape_debug().to_string());
+    // What it repeats of others must not begin a line that looks like one of the program's own.
+    let sentence = one_line(sentence);
     let _ = writeln!(AutoStream::auto(io::stderr()), "{}", wrapped(&sentence, width_of(&io::stderr())));
 }
 
@@ -214,7 +227,7 @@ fn harmless(text: &str, escaped: impl Fn(char) -> String) -> String {
         let colour = colour(rest);
         let (piece, tail) = rest.split_at(colour.unwrap_or(c.len_utf8()));
         match colour {
-            None if steers_terminals(c) || c == '\r' => shown.push_str(&escaped(c)),
+            None if steers_terminals(c) || is_invisible(c) || c == '\r' => shown.push_str(&escaped(c)),
             None | Some(_) => shown.push_str(piece),
         }
         rest = tail;
@@ -246,37 +259,6 @@ struct Shown<'a> {
 impl fmt::Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.handler.debug(self.mistake, f)
-    }
-}
-
-/// An error without a place in a file, with help if there is any.
-#[derive(Debug)]
-pub(crate) struct Plain<E> {
-    error: E,
-    help: Option<&'static str>,
-}
-
-impl<E> Plain<E> {
-    pub(crate) fn new(error: E) -> Self {
-        Plain { error, help: None }
-    }
-
-    pub(crate) fn with_help(error: E, help: Option<&'static str>) -> Self {
-        Plain { error, help }
-    }
-}
-
-impl<E: fmt::Display> fmt::Display for Plain<E> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.error.fmt(f)
-    }
-}
-
-impl<E: fmt::Debug + fmt::Display> std::error::Error for Plain<E> {}
-
-impl<E: fmt::Debug + fmt::Display> Diagnostic for Plain<E> {
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 }
 

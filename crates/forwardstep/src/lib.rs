@@ -32,6 +32,8 @@ mod commands;
 mod console;
 #[cfg(feature = "program")]
 mod falsify;
+#[cfg(feature = "program")]
+mod mistake;
 #[cfg(feature = "files")]
 pub mod own;
 #[cfg(feature = "program")]

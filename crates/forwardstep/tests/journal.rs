@@ -327,3 +327,30 @@ fn a_page_that_cannot_be_written_ends_no_run() {
     forwardstep(&folder, &["report", "limited", "--out", "elsewhere"]).success();
     assert!(recording(&folder.path().join("elsewhere")).t_s.len() > 100);
 }
+
+#[test]
+fn regress_a_run_whose_folder_was_renamed_says_where_its_rows_are() {
+    let folder = scenario();
+    let path = |out: &str| folder.path().join(out);
+    let mut run = Process::new(assert_cmd::cargo::cargo_bin("forwardstep"))
+        .current_dir(&folder)
+        .args(["run", "mine/long.toml", "--out", "runs"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    assert!(has_journal(&mut run, &path("runs")));
+    fs::rename(path("runs"), path("away")).unwrap();
+    let mut next = start(&folder, "runs");
+    assert!(has_journal(&mut next, &path("runs")));
+    next.kill().unwrap();
+    next.wait().unwrap();
+    let journal = fs::read(path("runs/rows.journal")).unwrap();
+    let ended = run.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stderr).unwrap();
+    assert_eq!(ended.status.code(), Some(2), "{said}");
+    assert!(said.contains("another folder by now") && !said.contains("runs/rows.journal"), "{said}");
+    assert!(fs::read(path("runs/rows.journal")).unwrap() == journal && names(&path("runs")) == ["rows.journal"]);
+    forwardstep(&folder, &["report", "away"]).success();
+    assert!(recording(&path("away")).t_s.len() == 2001, "all rows are there");
+}

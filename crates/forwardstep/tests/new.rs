@@ -232,10 +232,35 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
     assert!(text.contains("adaptation_gain = { bandwidth_per_s = 20 }"), "{text}");
     // Damping without the inertia of the rotors behind it.
     fs::write(folder.path().join("light.urdf"), PENDULUM.replace("LIMIT", "3").replace("DAMPING", "1e5")).unwrap();
-    let told = stderr(&forwardstep(&folder, &["new", "light.toml", "--robot", "light.urdf", "--agents", "2"]).code(1));
+    let written = forwardstep(&folder, &["new", "light.toml", "--robot", "light.urdf", "--agents", "2"]).code(1);
+    let told = stderr(&written);
+    assert!(told.contains("too stiff for a trial") && !told.contains("Broke down"), "{told}");
+    assert!(!stdout(&written).contains("; next: forwardstep run"), "{}", stdout(&written));
     assert!(told.contains("D/λ_min(M)") && told.contains("`armature`") && told.contains("no trial did"), "{told}");
     let text = fs::read_to_string(folder.path().join("light.toml")).unwrap();
     assert!(text.contains("# [goal]") && text.contains("damping.bandwidth_per_s = 20 "), "{text}");
+    assert!(text.contains("\n# No trial of this did what it should: ") && text.contains("`armature`"), "{text}");
+    // What fails alike however long it is waited for is said once.
+    let tight = PENDULUM.replace("-LIMIT", "0.1").replace("LIMIT", "0.1001").replace("DAMPING", "0");
+    fs::write(folder.path().join("narrow.urdf"), tight).unwrap();
+    let arguments = ["new", "narrow.toml", "--robot", "narrow.urdf", "--agents", "2", "--dry-friction"];
+    let told = stderr(&forwardstep(&folder, &arguments));
+    let mut lines: Vec<&str> = told.lines().collect();
+    let count = lines.len();
+    lines.sort_unstable();
+    lines.dedup();
+    assert_eq!(lines.len(), count, "{told}");
+    // A motor that is too weak for what the trial asks of it.
+    fs::write(
+        folder.path().join("weak.urdf"),
+        PENDULUM.replace("LIMIT", "3").replace("DAMPING", "0").replace("effort=\"100\"", "effort=\"0.1\""),
+    )
+    .unwrap();
+    let told = stderr(&forwardstep(&folder, &["new", "weak.toml", "--robot", "weak.urdf", "--agents", "2"]).success());
+    assert!(told.contains("but hinge of arm-") && told.contains("where its effort limit is 0.1 N"), "{told}");
+    let text = fs::read_to_string(folder.path().join("weak.toml")).unwrap();
+    assert!(text.contains("\n# In the trial hinge of arm-") && text.contains("`enforce_limits = true`"), "{text}");
+    forwardstep(&folder, &["run", "weak.toml"]).success();
     forwardstep(&folder, &["new", "untried.toml", "--robot", "light.urdf", "--agents", "2", "--untried"]).success();
 }
 

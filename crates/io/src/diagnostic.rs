@@ -6,15 +6,18 @@ use std::sync::Arc;
 
 use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
-use crate::shown::{one_line, printable, shown, steers_terminals};
+use crate::Meant;
+use crate::shown::{is_invisible, one_line, printable, shown, steers_terminals};
 
 /// Lines longer than this are not shown whole, in bytes.
 const LONGEST_LINE: usize = 400;
 /// What is shown before and after the place in such a line, and of what is marked, in bytes.
 const AROUND: usize = 60;
-/// What stands in scenarios and robots and hardly anywhere else. Of a file that has none of it, which may have been named by mistake, nothing
-/// is shown but the line of the mistake.
-const FAMILIAR: [&str; 5] = ["[[agents]]", "[network]", "[time]", "format = ", "<robot"];
+/// What stands in scenarios, robots and their states and hardly anywhere else. Of a file that has none of it, which may have been named by
+/// mistake and be a secret, nothing is shown but the place of the mistake, and that only in part.
+const FAMILIAR: [&str; 6] = ["[[agents]]", "[network]", "[time]", "format = ", "<robot", "\"q\":"];
+/// What is shown of the place of a mistake in such a file, in bytes.
+const AT_PLACE: usize = 24;
 
 /// A file's name and text, shared by all that is said about it.
 #[derive(Clone, Debug)]
@@ -34,7 +37,7 @@ impl SourceText {
     /// Keeps `text` under `name`, the path as the user wrote it.
     pub fn new(name: impl AsRef<str>, text: impl Into<String>) -> Self {
         let text = text.into();
-        let shown = text.contains(|c| c == '\r' || steers_terminals(c)).then(|| printable(&text));
+        let shown = text.contains(|c| c == '\r' || steers_terminals(c) || is_invisible(c)).then(|| printable(&text));
         SourceText { file: Arc::new(File { name: name.as_ref().to_owned(), text, shown }) }
     }
 
@@ -70,13 +73,17 @@ fn boundary(text: &str, offset: usize) -> usize {
     offset
 }
 
-/// From the beginning of the line where `span` begins to the end of that where it ends.
-fn whole_lines(text: &str, span: &SourceSpan) -> SourceSpan {
+/// The beginning of what stands at `span`, as far as it is in one line.
+fn place(text: &str, span: &SourceSpan) -> SourceSpan {
     let start = boundary(text, span.offset());
-    let start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
-    let end = boundary(text, span.offset().saturating_add(span.len()));
-    let end = text[end..].find(['\r', '\n']).map_or(text.len(), |newline| end + newline);
+    let end = boundary(text, span.offset().saturating_add(span.len().min(AT_PLACE)));
+    let end = text[start..end].find(['\r', '\n']).map_or(end, |newline| start + newline);
     (start, end - start).into()
+}
+
+/// Whether a text is one of those that this program reads, so that more of it may be shown than the place of a mistake.
+fn is_familiar(text: &str) -> bool {
+    FAMILIAR.iter().any(|own| text.contains(own)) || Meant::of(text) == Some(Meant::Csv)
 }
 
 impl SourceCode for SourceText {
@@ -88,12 +95,14 @@ impl SourceCode for SourceText {
         lines_after: usize,
     ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
         let text = self.shown();
-        let is_familiar = FAMILIAR.iter().any(|own| text.contains(own));
-        let contents = if is_familiar {
-            text.read_span(span, lines_before, lines_after)?
-        } else {
-            text.read_span(&whole_lines(text, span), 0, 0)?
-        };
+        if !is_familiar(text) {
+            let place = place(text, span);
+            let data = &text.as_bytes()[place.offset()..place.offset() + place.len()];
+            let (line, column) = self.line_column(place.offset());
+            let name = shown(self.name()).to_string();
+            return Ok(Box::new(MietteSpanContents::new_named(name, data, place, line - 1, column - 1, 1)));
+        }
+        let contents = text.read_span(span, lines_before, lines_after)?;
         let (mut data, mut whole) = (contents.data(), *contents.span());
         let (mut line, mut column, mut lines) = (contents.line(), contents.column(), contents.line_count());
         if data.split(|byte| *byte == b'\n').any(|line| line.len() > LONGEST_LINE) {

@@ -52,7 +52,11 @@ const KEYS: [&str; 6] =
     ["-----BEGIN ", "---- BEGIN ", "PuTTY-User-Key-File-", "AGE-SECRET-KEY-", "ssh-rsa AAAA", "ssh-ed25519 AAAA"];
 
 /// Parts of names under which secrets are kept and nothing else.
-const SECRETS: [&str; 6] = ["PASSWORD", "PASSWD", "SECRET", "TOKEN", "API_KEY", "CREDENTIAL"];
+const SECRETS: [&str; 8] =
+    ["PASSWORD", "PASSWD", "SECRET", "TOKEN", "API_KEY", "ACCESS_KEY", "PRIVATE_KEY", "CREDENTIAL"];
+
+/// How passwords begin that were hashed.
+const HASHES: [&str; 3] = ["$", "{SHA}", "{SSHA}"];
 
 /// What these bytes are, if they are clearly something else.
 pub(crate) fn foreign_bytes(bytes: &[u8]) -> Option<Foreign> {
@@ -71,28 +75,56 @@ pub(crate) fn foreign_text(text: &str) -> Option<Foreign> {
     if begins.starts_with("<html") || begins.starts_with("<!doctype html") {
         return Some(Foreign::Page);
     }
-    if is_account(first) {
+    if is_account(first) || is_hashed(first) {
         return Some(Foreign::Accounts);
     }
-    text.lines().any(is_secret).then_some(Foreign::Secrets)
+    let is_for_machines = has_logins(first, text) || is_login(first);
+    (is_for_machines || text.lines().any(is_secret)).then_some(Foreign::Secrets)
+}
+
+fn is_number(field: &str) -> bool {
+    !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+fn is_name(field: &str) -> bool {
+    !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-.$@".contains(&byte))
 }
 
 /// A line of `passwd`, `group` or `shadow`: fields between colons of which the third is a number.
 fn is_account(line: &str) -> bool {
     let fields: Vec<&str> = line.split(':').collect();
-    let is_number = |field: &str| !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_digit());
-    let is_name = |field: &str| {
-        !field.is_empty() && field.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-.$".contains(&byte))
-    };
     matches!(fields.len(), 4 | 7 | 9) && is_name(fields[0]) && is_number(fields[2])
 }
 
-/// A line such as `export API_TOKEN=…` or `aws_secret_access_key = …`. Keys of a scenario say nothing of the kind.
+/// A line of `.htpasswd`: a name and the hash of a password.
+fn is_hashed(line: &str) -> bool {
+    let fields = line.split_once(':');
+    fields.is_some_and(|(name, hash)| is_name(name) && HASHES.iter().any(|begins| hash.starts_with(begins)))
+}
+
+/// A line of `.pgpass`: host, port, database, user and password between colons.
+fn is_login(line: &str) -> bool {
+    // A colon within a field has a stroke before it.
+    let line = line.replace("\\\\", "").replace("\\:", "");
+    let fields: Vec<&str> = line.split(':').collect();
+    let is_plain = |field: &str| field == "*" || is_name(field);
+    matches!(&*fields, [host, port, rest @ .., _] if rest.len() == 2
+        && is_plain(host) && (*port == "*" || is_number(port)) && rest.iter().all(|field| is_plain(field)))
+}
+
+/// A `.netrc`: words by the name of a machine, one after the other.
+fn has_logins(first: &str, text: &str) -> bool {
+    let begins = first.split_whitespace().next();
+    let names = ["login", "password", "account"];
+    matches!(begins, Some("machine" | "default")) && text.split_whitespace().any(|word| names.contains(&word))
+}
+
+/// A line such as `export API_TOKEN=…`, `aws_secret_access_key = …` or `"password": …`. Keys of a scenario say nothing of the kind.
 fn is_secret(line: &str) -> bool {
     let line = line.trim_start();
     let line = line.strip_prefix("export ").unwrap_or(line);
-    let Some((name, value)) = line.split_once('=') else { return false };
-    let name = name.trim().to_ascii_uppercase();
+    let Some((name, value)) = line.split_once(['=', ':']) else { return false };
+    let name = name.trim().trim_matches(['"', '\'']).to_ascii_uppercase();
     let plain = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
     plain && !value.trim().is_empty() && SECRETS.iter().any(|secret| name.contains(secret))
 }
@@ -112,6 +144,16 @@ mod tests {
             ("# groups\nwheel:x:10:\n", Foreign::Accounts),
             ("HOST=a\nexport DB_PASSWORD=hunter2\n", Foreign::Secrets),
             ("[default]\naws_secret_access_key = abc\n", Foreign::Secrets),
+            ("aws_access_key_id = AKIA\n", Foreign::Secrets),
+            ("machine example.org login me password hunter2\n", Foreign::Secrets),
+            ("# mine\nmachine example.org\n  login me\n  password hunter2\n", Foreign::Secrets),
+            ("default login anonymous\n", Foreign::Secrets),
+            ("db.example.org:5432:orders:me:hunter2\n", Foreign::Secrets),
+            ("*:*:*:me:a\\:b\n", Foreign::Secrets),
+            ("{\n  \"client_secret\": \"abc\"\n}\n", Foreign::Secrets),
+            ("user: me\npassword: hunter2\n", Foreign::Secrets),
+            ("me:$apr1$abc$def\n", Foreign::Accounts),
+            ("me@example.org:{SHA}abc=\n", Foreign::Accounts),
             ("\n<!DOCTYPE HTML>\n<title>", Foreign::Page),
         ] {
             assert_eq!(foreign_text(text), Some(what), "{text}");
@@ -124,8 +166,18 @@ mod tests {
         for shipped in SHIPPED_SCENARIOS {
             assert_eq!((foreign_text(shipped.text), foreign_bytes(shipped.text.as_bytes())), (None, None));
         }
-        for text in ["", "\n", "format = 2", "from,to\n1:2:3:4,5", "<robot name=\"a\"/>", "{\"a\": 1}", "a:b", "token"]
-        {
+        for text in [
+            "",
+            "\n",
+            "format = 2",
+            "from,to\n1:2:3:4,5",
+            "<robot name=\"a\"/>",
+            "{\"a\": 1}",
+            "a:b",
+            "token",
+            "machine = 1",
+            "a:1:b",
+        ] {
             assert_eq!(foreign_text(text), None, "{text}");
         }
     }

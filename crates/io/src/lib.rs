@@ -20,5 +20,5 @@ pub use diagnostic::{InputError, Problem, SourceText};
 pub use files::{ReadError, Special};
 pub use foreign::Foreign;
 pub use meant::Meant;
-pub use shown::{Shown, breaks_lines, shown, steers_terminals};
+pub use shown::{Shown, breaks_lines, is_invisible, one_line, shown, steers_terminals};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};

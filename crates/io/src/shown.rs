@@ -13,6 +13,12 @@ pub fn steers_terminals(c: char) -> bool {
     c.is_control() && !matches!(c, '\t' | '\n' | '\r') || matches!(c, '\u{2028}' | '\u{2029}') || turns
 }
 
+/// Whether a character takes no place and shows nothing, so that a text with it looks as one without: zero widths, soft hyphens, marks of the
+/// order of bytes, tags.
+pub fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}'..='\u{2064}' | '\u{feff}' | '\u{e0000}'..='\u{e007f}')
+}
+
 /// Whether a character does not belong into a line of text.
 pub fn breaks_lines(c: char) -> bool {
     c.is_control() || steers_terminals(c)
@@ -39,7 +45,7 @@ impl fmt::Display for Shown<'_> {
 }
 
 /// A message as one line of reasonable length, whatever of a file it quotes.
-pub(crate) fn one_line(message: impl fmt::Display) -> String {
+pub fn one_line(message: impl fmt::Display) -> String {
     let message = message.to_string();
     let mut line = String::with_capacity(message.len().min(LONGEST_MESSAGE));
     for c in message.chars() {
@@ -54,16 +60,43 @@ pub(crate) fn one_line(message: impl fmt::Display) -> String {
 }
 
 fn escaped(c: char, out: &mut impl Write) -> fmt::Result {
-    if breaks_lines(c) { write!(out, "{}", c.escape_debug()) } else { out.write_char(c) }
+    let is_raw = !breaks_lines(c) && !is_invisible(c);
+    if is_raw { out.write_char(c) } else { write!(out, "{}", c.escape_debug()) }
 }
 
-/// The same text with question marks in place of such characters, and of returns that end no line, as many as they have
-/// bytes.
+/// The same text with question marks in place of such characters and of those that show nothing, and of returns that end no line, as many
+/// as they have bytes. The mark of the order of bytes with which some editors begin a file becomes blanks.
 pub(crate) fn printable(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for (start, c) in text.char_indices() {
         let returns = c == '\r' && !text[start + 1..].starts_with('\n');
-        if returns || steers_terminals(c) { (0..c.len_utf8()).for_each(|_| shown.push('?')) } else { shown.push(c) }
+        if c == '\u{feff}' && start == 0 {
+            shown.push_str("   ");
+        } else if returns || steers_terminals(c) || is_invisible(c) {
+            (0..c.len_utf8()).for_each(|_| shown.push('?'));
+        } else {
+            shown.push(c);
+        }
     }
     shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_shows_nothing_is_escaped_and_takes_the_place_of_its_bytes_where_lines_are_shown() {
+        let hidden = ['\u{ad}', '\u{200b}', '\u{200d}', '\u{2060}', '\u{2064}', '\u{feff}', '\u{e0001}', '\u{e0041}'];
+        for c in hidden {
+            let name = format!("ti{c}tle");
+            assert_eq!(shown(&name).to_string(), format!("ti\\u{{{:x}}}tle", u32::from(c)));
+            assert_eq!(one_line(&name), shown(&name).to_string());
+            assert_eq!(printable(&name), format!("ti{}tle", "?".repeat(c.len_utf8())));
+        }
+        assert_eq!(printable("\u{feff}format = 2"), "   format = 2");
+        for plain in ["title", "größe", "q\u{307}", "σ ≤ 1 – 2"] {
+            assert_eq!((shown(plain).to_string(), printable(plain)), (plain.to_owned(), plain.to_owned()));
+        }
+    }
 }

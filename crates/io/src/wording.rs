@@ -68,6 +68,19 @@ pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{}`?", shown(name)))
 }
 
+/// "`а` is U+0430": letters of a word that look like others, or like nothing, and that no candidate has.
+fn strange_letters<'a>(word: &str, candidates: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
+    const MOST: usize = 3;
+    let is_mixed = word.chars().any(|c| c.is_ascii_alphanumeric());
+    let known = |c: char| candidates.clone().any(|candidate| candidate.contains(c));
+    let mut strange: Vec<char> = word.chars().filter(|c| is_mixed && !c.is_ascii() && !known(*c)).collect();
+    strange.dedup();
+    strange.truncate(MOST);
+    let named = |c: &char| format!("`{}` is U+{:04X}", shown(c.encode_utf8(&mut [0; 4])), u32::from(*c));
+    let named: Vec<String> = strange.iter().map(named).collect();
+    (!named.is_empty()).then(|| enumerate(named.into_iter()))
+}
+
 /// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
 pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
     // All that ships fits; of a folder with many files the first are named, and how many there are besides.
@@ -79,6 +92,10 @@ pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> 
         more => format!(" and {more} more"),
     };
     let listed = format!("{kind} {}{more}", listed.join(", "));
+    let listed = match strange_letters(word, names()) {
+        Some(letters) => format!("{letters}; {listed}"),
+        None => listed,
+    };
     match did_you_mean(nearest(word, names()).as_deref()) {
         Some(question) => format!("{question} {listed}"),
         None => listed,
@@ -113,6 +130,19 @@ mod tests {
         assert_eq!(nearest("gripper", joints), None);
         assert_eq!(nearest("", joints), None);
         assert_eq!(nearest("arm", ["amr", "base"]).as_deref(), Some("amr"));
+    }
+
+    #[test]
+    fn letters_that_look_like_others_are_named() {
+        let keys = ["title", "time"];
+        assert_eq!(
+            choose("titl\u{435}", "keys are", &keys),
+            "did you mean `title`? `\u{435}` is U+0435; keys are `title`, `time`"
+        );
+        assert!(choose("time\u{200b}", "keys are", &keys).contains("`\\u{200b}` is U+200B; keys are"));
+        for word in ["titel", "größe.toml", "時間"] {
+            assert!(!choose(word, "there are", &["größe-2.toml", "time"]).contains("U+"), "{word}");
+        }
     }
 
     #[test]

@@ -199,6 +199,60 @@ fn force_spares_a_folder_that_no_run_wrote_and_what_was_changed_in_one() {
 }
 
 #[test]
+fn what_no_file_can_replace_is_found_before_the_run() {
+    let (setup, outcome) = two_arms();
+    for (name, found) in [
+        ("report.html", "a folder"),
+        ("shapes.json", "a folder"),
+        ("plots/torques.svg", "a folder"),
+        (".summary.json.partial", "a folder"),
+        ("rows.journal", "a folder"),
+        ("plots", "no folder"),
+        ("inputs", "no folder"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        write(path, &setup, &outcome);
+        let way = path.join(name);
+        if way.is_dir() {
+            fs::remove_dir_all(&way).unwrap()
+        } else {
+            drop(fs::remove_file(&way))
+        }
+        if found == "a folder" {
+            fs::create_dir_all(way.join("mine")).unwrap()
+        } else {
+            fs::write(&way, "mine").unwrap()
+        }
+        let error = RunFolder::create(path, true).unwrap_err();
+        assert!(matches!(&error, OutputError::InTheWay { path, .. } if *path == way), "{name}: {error}");
+        assert!(error.to_string().contains(found) && error.help().is_some_and(|help| help.contains("move it")));
+        // The report alone is written anew by `report`.
+        let drawn = ["report.html", "plots/torques.svg", "plots"].contains(&name);
+        assert_eq!(RunFolder::open(path).is_err(), drawn, "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_table_of_another_length_is_not_read() {
+    let (setup, outcome) = two_arms();
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), &setup, &outcome);
+    let table = folder.path().join("trajectory.parquet");
+    let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
+    assert!(summary.contains(&format!("\"bytes\": {}", fs::metadata(&table).unwrap().len())), "{summary}");
+    // Of holes, which take no room, but would take hours to read.
+    fs::File::options().write(true).open(&table).unwrap().set_len(1 << 43).unwrap();
+    let began = std::time::Instant::now();
+    assert!(matches!(RunFolder::create(folder.path(), true), Err(OutputError::Changed { path }) if path == table));
+    assert!(began.elapsed().as_secs() < 10);
+    // Where its length is right, what it holds decides.
+    fs::write(&table, vec![0; 8]).unwrap();
+    assert!(matches!(RunFolder::create(folder.path(), true), Err(OutputError::Changed { .. })));
+}
+
+#[test]
 fn leftovers_of_a_killed_writer_do_not_count() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("plots")).unwrap();
@@ -263,8 +317,8 @@ fn a_failure_half_way_leaves_an_earlier_run_whole() {
     write(folder.path(), &setup, &outcome);
     let before = fs::read(folder.path().join("summary.json")).unwrap();
     // A folder under a temporary name cannot be opened as a file.
-    fs::create_dir(folder.path().join(".report.html.partial")).unwrap();
     let run = RunFolder::create(folder.path(), true).unwrap();
+    fs::create_dir(folder.path().join(".report.html.partial")).unwrap();
     let error = write_run(&run, &record(&setup, &outcome, &report), Options::default()).unwrap_err();
     assert!(matches!(error, OutputError::Io { action: Action::CreateFile, .. }), "{error}");
     assert_eq!(fs::read(folder.path().join("summary.json")).unwrap(), before);

@@ -4,9 +4,9 @@
 
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use forwardstep_io::output::{Options, RunFolder, RunRecord, write_run};
+use forwardstep_io::output::{Options, OutputError, RunFolder, RunRecord, write_run};
 use forwardstep_io::scenario::{OpenError, open_scenario};
 use forwardstep_sim::simulate;
 
@@ -32,6 +32,11 @@ const CART: &str = r#"<robot name="cart"><link name="rail"/>
 
 /// Runs a scenario and writes its folder.
 fn run(scenario: &Path, out: &Path) {
+    run_into(&RunFolder::create(out, false).unwrap(), scenario).unwrap();
+}
+
+/// Runs a scenario and writes it into a folder that is there.
+fn run_into(folder: &RunFolder, scenario: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let scenario = open_scenario(scenario.to_str().unwrap()).unwrap();
     let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let record = RunRecord {
@@ -51,7 +56,7 @@ fn run(scenario: &Path, out: &Path) {
         notices: Vec::new(),
         shapes: None,
     };
-    write_run(&RunFolder::create(out, false).unwrap(), &record, Options::default()).unwrap();
+    write_run(folder, &record, Options::default())
 }
 
 #[test]
@@ -111,4 +116,73 @@ fn a_folder_that_is_held_for_a_moment_is_waited_for() {
     RunFolder::create(folder.path(), false).unwrap();
     later.join().unwrap();
     assert_eq!(RunFolder::is_in_use(folder.path()), Some(false));
+}
+
+/// The names in a folder and what the files hold.
+#[cfg(unix)]
+fn content(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { folders.push(path) } else { files.push((path.clone(), fs::read(path).unwrap())) }
+        }
+    }
+    files.sort();
+    files
+}
+
+// A folder that is held open cannot be renamed elsewhere.
+#[cfg(unix)]
+#[test]
+fn regress_a_run_whose_folder_was_renamed_leaves_the_next_of_that_name_alone() {
+    let here = tempfile::tempdir().unwrap();
+    let scenario = here.path().join("carts.toml");
+    fs::write(
+        &scenario,
+        CARTS.replace("urdf.file = \"../robots/cart.urdf\"", "point_mass = { dimension = 1, mass_kg = 2 }"),
+    )
+    .unwrap();
+    fs::write(here.path().join("edges.csv"), "from,to\ncart-1,cart-2\ncart-2,cart-1\n").unwrap();
+    let (name, away) = (here.path().join("runs/carts"), here.path().join("runs/away"));
+    let refused = |folder: &RunFolder, content_before: &[(PathBuf, Vec<u8>)]| {
+        assert!(folder.is_elsewhere());
+        let error = run_into(folder, &scenario).unwrap_err();
+        let OutputError::Elsewhere { path, now } = &error else { panic!("{error}") };
+        assert_eq!(path, &name);
+        if cfg!(target_os = "linux") {
+            assert_eq!(now.as_deref(), Some(fs::canonicalize(&away).unwrap().as_path()));
+        }
+        assert!(error.help().is_some_and(|help| help.contains("forwardstep report")), "{error}");
+        assert_eq!(content(&name), content_before);
+    };
+    // The next run has just begun, and its folder is empty.
+    let first = RunFolder::create(&name, false).unwrap();
+    fs::rename(&name, &away).unwrap();
+    let next = RunFolder::create(&name, false).unwrap();
+    refused(&first, &[]);
+    drop(first);
+    assert!(name.is_dir());
+    // It is over; and it has its journal, and files that are not finished.
+    run_into(&next, &scenario).unwrap();
+    drop(next);
+    fs::remove_dir_all(&away).unwrap();
+    let first = RunFolder::create(&name, true).unwrap();
+    fs::rename(&name, &away).unwrap();
+    run(&scenario, &name);
+    fs::write(name.join("rows.journal"), "of the next").unwrap();
+    fs::write(name.join(".scenario.toml.partial"), "of the next").unwrap();
+    refused(&first, &content(&name));
+    let before = content(&name);
+    drop(first);
+    assert_eq!(content(&name), before);
+    // Where nothing has the name, the folder is made anew, and kept from others.
+    fs::remove_dir_all(&name).unwrap();
+    let first = RunFolder::create(&name, false).unwrap();
+    fs::remove_dir_all(&name).unwrap();
+    assert!(!first.is_elsewhere());
+    run_into(&first, &scenario).unwrap();
+    assert_eq!(RunFolder::is_in_use(&name), Some(true));
+    assert!(name.join("summary.json").is_file());
 }

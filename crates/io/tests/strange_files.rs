@@ -46,6 +46,9 @@ fn what_is_clearly_something_else_is_named_and_never_quoted() {
     for (bytes, what, hidden) in [
         (KEY.as_bytes(), "it holds a key or a certificate", "b3Blbn"),
         (ACCOUNTS.as_bytes(), "it holds a list of accounts", "/bin/bash"),
+        (b"machine example.org login me password hunter2\n", "it holds passwords or tokens", "hunter2"),
+        (b"example.org:5432:orders:me:hunter2\n", "it holds passwords or tokens", "hunter2"),
+        (b"me:$apr1$hunter2$x\n", "it holds a list of accounts", "hunter2"),
         (SETTINGS.as_bytes(), "it holds passwords or tokens", "example.org"),
         (b"\x7fELF\x02\x01\x01 secrets", "it holds a program, an archive", "secrets"),
     ] {
@@ -57,7 +60,7 @@ fn what_is_clearly_something_else_is_named_and_never_quoted() {
 }
 
 #[test]
-fn of_a_text_that_may_be_anything_only_the_line_of_the_mistake_is_shown() {
+fn of_a_text_that_may_be_anything_only_the_place_of_the_mistake_is_shown() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("letter.toml");
     fs::write(&path, "first = 1\nDear Ms Lovelace,\nplease keep this between us\n").unwrap();
@@ -65,7 +68,18 @@ fn of_a_text_that_may_be_anything_only_the_line_of_the_mistake_is_shown() {
     for said in [&scenario, &robot] {
         assert!(!said.contains("between us"), "{said}");
     }
-    assert!(scenario.contains("Dear Ms Lovelace") && !scenario.contains("first = 1"), "{scenario}");
+    assert!(scenario.contains("letter.toml:2:6") && !scenario.contains("Lovelace"), "{scenario}");
+    assert!(!scenario.contains("first = 1"), "{scenario}");
+    for (text, hidden) in [
+        ("user = me, my secret is hunter2\n", "hunter2"),
+        ("token hunter2", "hunter2"),
+        ("a = 'b'\nsomething_long_that_nobody_should_see = 1\n", "nobody"),
+        ("a = [1, 2", "1, 2"),
+    ] {
+        fs::write(&path, text).unwrap();
+        let [scenario, ..] = said(&path);
+        assert!(scenario.contains("letter.toml") && !scenario.contains(hidden), "{scenario}");
+    }
     // Around a mistake in a scenario there are lines to find it by.
     fs::write(&path, WITH_EDGES.replace("count = 2", "count = two")).unwrap();
     assert!(said(&path)[0].contains("robot.point_mass"));
@@ -119,6 +133,24 @@ fn pipes_devices_and_folders_are_refused_at_once() {
     for said in said(&room) {
         assert!(said.contains("it is a folder"), "{said}");
     }
+    assert!(flat(&said(&room)[0]).contains("give a scenario file, or the folder of a run"));
+    fs::write(room.join("mine.toml"), "").unwrap();
+    assert!(flat(&said(&room)[0]).contains("name a file in it: there are `mine.toml`"));
+    // What stands in place of the scenario of a run is named.
+    let scenario = room.join("scenario.toml");
+    std::os::unix::fs::symlink("nowhere", &scenario).unwrap();
+    let missing = flat(&said(&room)[0]);
+    assert!(
+        missing.contains("room/scenario.toml`: there is no such file") && missing.contains("a link to"),
+        "{missing}"
+    );
+    fs::remove_file(&scenario).unwrap();
+    fs::create_dir(&scenario).unwrap();
+    assert!(flat(&said(&room)[0]).contains("room/scenario.toml`: it is a folder"));
+    fs::remove_dir(&scenario).unwrap();
+    fs::write(room.join("rows.journal"), "").unwrap();
+    let journaled = flat(&said(&room)[0]);
+    assert!(journaled.contains("a run that was cut off") && journaled.contains("forwardstep report "), "{journaled}");
     let (device, socket) = (folder.path().join("device"), folder.path().join("socket"));
     std::os::unix::fs::symlink("/dev/zero", &device).unwrap();
     let _listening = std::os::unix::net::UnixListener::bind(&socket).unwrap();

@@ -10,7 +10,7 @@ use forwardstep::io::shown;
 use super::stop::Stop;
 use crate::arguments::{AttackOptions, AttackTarget};
 use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
-use crate::falsify::{Attack, GROWS, OwnAttack, OwnFound, Target};
+use crate::falsify::{Attack, GROWS, NoAttack, OwnAttack, OwnFound, Target};
 use crate::status::Status;
 
 /// Searches for delays and schedules under which a design, or a scenario, does worst.
@@ -62,7 +62,14 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
     let (pieces, seed, limit) = (options.pieces, options.seed, limit(options));
     let attack = OwnAttack { scenario: &scenario, kinds, pieces, seed, limit };
     let failed = |error| complain(&Plain::new(format!("`{}` cannot be attacked: {error}", options.what)));
-    let OwnFound { text, worst, stated, broken, tried } = attack.search(&|| stop.asked().is_some()).map_err(failed)?;
+    let OwnFound { text, worst, stated, broken, tried } = match attack.search(&|| stop.asked().is_some()) {
+        Ok(found) => found,
+        Err(NoAttack::Stopped) => {
+            console.line(NoAttack::Stopped);
+            return Ok(stop.asked().unwrap_or(Status::Interrupted));
+        }
+        Err(error) => return Err(failed(error)),
+    };
     let grows = worst.grew || (!worst.of_interval && worst.part > GROWS);
     let [part, before] = [worst.part, stated.part].map(percent);
     let of = if worst.of_interval { "interval of all cascaded variables" } else { "disagreement" };

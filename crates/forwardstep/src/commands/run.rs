@@ -54,7 +54,8 @@ pub(super) fn execute(
     console: &mut Console,
 ) -> Result<Status, Status> {
     // Before the run, so that no work is lost to a folder that cannot be written to.
-    let folder = RunFolder::create(path, options.force).map_err(refused)?;
+    // What an earlier run wrote is read for that, which takes long where it is large.
+    let folder = stop.at_once(|| RunFolder::create(path, options.force)).map_err(refused)?;
     show(scenario, promise, console);
     let (setup, mut bar) = (&scenario.setup, Bar::new());
     let predicts = options.predict || predicts_quickly(setup);
@@ -117,7 +118,7 @@ pub(super) fn execute(
         record.digital = digital_cost(scenario, &outcome, stop);
     }
     let files = output::write_run(&folder, &record, output::Options { csv: options.csv })
-        .map_err(|error| kept_if_journaled(refused(error), path))?;
+        .map_err(|error| kept_if_journaled(refused(error), &folder))?;
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));
     }
@@ -185,8 +186,10 @@ fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<D
 }
 
 /// Says where the rows are of a run whose files could not be written.
-fn kept_if_journaled(status: Status, path: &Path) -> Status {
-    if path.join("rows.journal").is_file() {
+fn kept_if_journaled(status: Status, folder: &RunFolder) -> Status {
+    let path = folder.path();
+    // What another folder under its name keeps is another run's.
+    if !folder.is_elsewhere() && path.join("rows.journal").is_file() {
         remark(format_args!(
             "What was computed until about a second before is in {folder}/rows.journal: `forwardstep report {folder}` writes the files \
              from it when it can, and `--out` writes them elsewhere.",

@@ -20,6 +20,10 @@ const VARIANTS: [(Option<f64>, Option<f64>); 7] = [
     (Some(0.5), Some(60.0)),
 ];
 
+/// What to do where a scenario without `[control]` has a meaning and the same with samples has none.
+const SHORTER: &str = "the scenario itself runs in continuous time; to find a period it is run with samples that are short for its gains: let \
+                       `time.end_s` be shorter";
+
 /// Measures the longest period with which scenarios still work, beside the rule.
 pub(crate) fn sampling_limit(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) -> Status {
     finish(options, kinds, console).unwrap_or_else(|status| status)
@@ -40,8 +44,16 @@ fn finish(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) 
                     console.line(tried(trial));
                 }
             };
-            let found = SamplingLimit::measure(&scenario.setup, deployment, accepted, &mut tell)
-                .map_err(|error| complain(&Plain::new(error)))?;
+            let found =
+                SamplingLimit::measure(&scenario.setup, deployment, accepted, &mut tell).map_err(
+                    |error| match scenario.setup.control {
+                        Some(_) => complain(&Plain::new(error)),
+                        None => complain(&Plain::with_help(
+                            format!("with the samples that are tried: {error}"),
+                            Some(SHORTER),
+                        )),
+                    },
+                )?;
             if options.table {
                 console.line(row(&scenario, deployment, &found));
             } else {

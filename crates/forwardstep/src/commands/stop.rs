@@ -1,7 +1,7 @@
 //! Ctrl-C and its kin: a run that is told to stop ends in order.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
 use crate::status::Status;
 
@@ -10,6 +10,8 @@ use crate::status::Status;
 pub(crate) struct Stop {
     /// The status to end with; zero until somebody asks.
     asked: Arc<AtomicU8>,
+    /// Whether nothing is there that has to be ended in order.
+    at_once: Arc<AtomicBool>,
 }
 
 impl Stop {
@@ -30,8 +32,16 @@ impl Stop {
         [Status::Interrupted, Status::Terminated, Status::HungUp].into_iter().find(|status| *status as u8 == asked)
     }
 
+    /// Does something that may take long and leaves nothing to be kept: a signal ends the program meanwhile.
+    pub(crate) fn at_once<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.at_once.store(true, Ordering::Relaxed);
+        let done = work();
+        self.at_once.store(false, Ordering::Relaxed);
+        done
+    }
+
     fn ask(&self, status: Status) {
-        if self.asked.swap(status as u8, Ordering::Relaxed) != 0 {
+        if self.asked.swap(status as u8, Ordering::Relaxed) != 0 || self.at_once.load(Ordering::Relaxed) {
             std::process::exit(status as i32);
         }
     }

@@ -4,8 +4,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use forwardstep::io::SourceText;
-use forwardstep::io::scenario::upgrade as converted;
+use forwardstep::io::scenario::{open_text, upgrade as converted};
 use forwardstep::io::shown;
 use thiserror::Error;
 
@@ -39,7 +38,8 @@ pub(crate) fn upgrade(options: &UpgradeOptions, console: &mut Console) -> Status
 
 fn one(path: &Path, options: &UpgradeOptions, console: &mut Console) -> Result<(), Status> {
     let unread = |reason| refused(UpgradeError::Read { path: path.to_owned(), reason });
-    let source = SourceText::new(path.display().to_string(), fs::read_to_string(path).map_err(unread)?);
+    // What is clearly no scenario, such as a key, is not quoted.
+    let source = open_text(path).map_err(|error| complain(&error))?;
     let upgraded = converted(&source).map_err(|error| complain(&error))?;
     let to = match &options.out {
         _ if options.stdout => None,

@@ -15,7 +15,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
 use super::case::{Case, Course, Design, Phase, Switching, System, hundredths, pick};
-use super::judge::{late, read, run};
+use super::judge::{late, read, run_unless};
 
 /// What is attacked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,10 +140,11 @@ impl Attack {
     /// The worst that is found in time; outside of a class the first that fails, made small. Nothing if no scenario could be tried.
     pub(crate) fn search(&self, stopped: &dyn Fn() -> bool) -> Option<Found> {
         let started = Instant::now();
+        let ends = || started.elapsed() >= self.limit || stopped();
         let rng = &mut ChaCha8Rng::seed_from_u64(self.seed);
         let mut worst: Option<(Case, f64)> = None;
         let (mut tried, mut round) = (0, 0_u64);
-        while started.elapsed() < self.limit && !stopped() {
+        while !ends() {
             // The fewest agents first, again and again with more.
             let agents = match self.target {
                 Target::Swarm => SWARM_AGENTS[(round % SWARM_AGENTS.len() as u64) as usize],
@@ -151,12 +152,12 @@ impl Attack {
             };
             round += 1;
             let mut best = self.draw(rng, agents);
-            let mut left = self.left(&best).unwrap_or(0.0);
+            let mut left = self.left(&best, &ends).unwrap_or(0.0);
             let mut idle = 0;
-            while idle < PATIENCE && started.elapsed() < self.limit && !stopped() {
+            while idle < PATIENCE && !ends() {
                 let other = self.changed(&best, rng);
                 tried += 1;
-                match self.left(&other) {
+                match self.left(&other, &ends) {
                     Some(more) if more > left => (best, left, idle) = (other, more, 0),
                     Some(_) | None => idle += 1,
                 }
@@ -173,7 +174,7 @@ impl Attack {
         }
         let (mut case, mut left) = worst?;
         if left > self.target.fails() {
-            (case, left) = self.smallest(case, left);
+            (case, left) = self.smallest(case, left, stopped);
         }
         let report = check(&read(&case).ok()?.setup);
         let broken =
@@ -330,46 +331,46 @@ impl Attack {
     }
 
     /// What is left at the end, as a part; nothing of what is no scenario or does not complete.
-    fn left(&self, case: &Case) -> Option<f64> {
+    fn left(&self, case: &Case, stopped: &dyn Fn() -> bool) -> Option<f64> {
         let setup = read(case).ok()?.setup;
         match self.target {
-            Target::Velocities | Target::Positions | Target::FirstRoots => disagreement(&ideal(&setup).ok()?),
+            Target::Velocities | Target::Positions | Target::FirstRoots => disagreement(&ideal(&setup).ok()?, stopped),
             Target::ComplexRoots => {
-                let left = disagreement(&ideal(&setup).ok()?)?;
+                let left = disagreement(&ideal(&setup).ok()?, stopped)?;
                 // What grows over one of its graphs for ever proves nothing about those that take turns.
                 let grows = |phase: &Phase| -> Option<bool> {
                     let alone = Case { phases: vec![phase.clone()], ..case.clone() };
-                    Some(disagreement(&ideal(&read(&alone).ok()?.setup).ok()?)? > FAILS)
+                    Some(disagreement(&ideal(&read(&alone).ok()?.setup).ok()?, stopped)? > FAILS)
                 };
                 let proves = left <= FAILS || !case.phases.iter().any(|phase| grows(phase).unwrap_or(true));
                 proves.then_some(left)
             }
             // Whom the leader never reaches, of windows or of graphs, cannot follow it.
             Target::Windows => {
-                rooted(&setup, setup.network.schedule.graphs.iter().flatten()).then(|| error_left(&setup))?
+                rooted(&setup, setup.network.schedule.graphs.iter().flatten()).then(|| error_left(&setup, stopped))?
             }
             Target::LateTurns | Target::Integrals => {
                 let each = setup.network.schedule.graphs.iter().all(|graph| rooted(&setup, graph));
-                each.then(|| error_left(&setup))?
+                each.then(|| error_left(&setup, stopped))?
             }
             Target::Swarm => {
                 // Over each of its graphs by itself everybody follows, by our derivation: no paper prints it.
                 let alone = |phase: &Phase| {
                     broken(&Case { phases: vec![phase.clone()], ..case.clone() }) == [Id::PrintedDesign]
                 };
-                case.phases.iter().all(alone).then(|| error_left(&setup))?
+                case.phases.iter().all(alone).then(|| error_left(&setup, stopped))?
             }
             Target::Weights => {
-                let left = error_left(&setup)?;
+                let left = error_left(&setup, stopped)?;
                 // What is slow with constant weights too proves nothing.
-                let twin = || error_left(&read(&Case { weight: "1".into(), ..case.clone() }).ok()?.setup);
+                let twin = || error_left(&read(&Case { weight: "1".into(), ..case.clone() }).ok()?.setup, stopped);
                 (left <= STAYS || twin()? < 0.2 * STAYS).then_some(left)
             }
         }
     }
 
     /// The smallest that still fails, with no hypothesis broken that was not before.
-    fn smallest(&self, mut case: Case, mut left: f64) -> (Case, f64) {
+    fn smallest(&self, mut case: Case, mut left: f64, stopped: &dyn Fn() -> bool) -> (Case, f64) {
         let (fails, before) = (self.target.fails(), broken(&case));
         loop {
             // What is shorter fails less, and is no nearer.
@@ -377,8 +378,10 @@ impl Attack {
                 .smaller()
                 .into_iter()
                 .filter(|smaller| smaller.end_s >= case.end_s && broken(smaller).iter().all(|id| before.contains(id)));
-            let found =
-                smaller.filter_map(|smaller| Some((self.left(&smaller)?, smaller))).find(|(left, _)| *left > fails);
+            let found = smaller
+                .take_while(|_| !stopped())
+                .filter_map(|smaller| Some((self.left(&smaller, stopped)?, smaller)))
+                .find(|(left, _)| *left > fails);
             match found {
                 Some((less, smaller)) => (case, left) = (smaller, less),
                 None => return (case, left),
@@ -420,8 +423,8 @@ fn pair(rng: &mut ChaCha8Rng) -> [f64; 2] {
 }
 
 /// The largest error of the last quarter as a part of that at the start.
-fn error_left(setup: &Setup) -> Option<f64> {
-    let outcome = run(setup).ok()?;
+fn error_left(setup: &Setup, stopped: &dyn Fn() -> bool) -> Option<f64> {
+    let outcome = run_unless(setup, stopped).ok()?;
     let initial = match Metrics::of(setup, &outcome.recording, None, None).disagreement {
         Disagreement::Measured { initial, .. } => initial,
         Disagreement::Absent(_) => return None,
@@ -430,8 +433,8 @@ fn error_left(setup: &Setup) -> Option<f64> {
 }
 
 /// The disagreement at the end as a part of that at the start.
-fn disagreement(setup: &Setup) -> Option<f64> {
-    let outcome = run(setup).ok()?;
+fn disagreement(setup: &Setup, stopped: &dyn Fn() -> bool) -> Option<f64> {
+    let outcome = run_unless(setup, stopped).ok()?;
     match Metrics::of(setup, &outcome.recording, None, None).disagreement {
         Disagreement::Measured { initial, last, .. } => Some(last / initial).filter(|left| left.is_finite()),
         Disagreement::Absent(_) => None,

@@ -133,6 +133,16 @@ pub(super) fn run(setup: &Setup) -> Result<Outcome, String> {
     simulate(setup, &mut |_| ControlFlow::Continue(())).map_err(|error| error.to_string())
 }
 
+/// The same, given up when it is `stopped`: one run of a large scenario may take longer than all of a search.
+pub(super) fn run_unless(setup: &Setup, stopped: &dyn Fn() -> bool) -> Result<Outcome, String> {
+    let mut goes_on = |_| if stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let outcome = simulate(setup, &mut goes_on).map_err(|error| error.to_string())?;
+    match outcome.ending {
+        Ending::Interrupted { .. } => Err("it was stopped".to_owned()),
+        _ => Ok(outcome),
+    }
+}
+
 fn without_errors(setup: &Setup) -> Verdict {
     let ideal = match ideal(setup) {
         Ok(ideal) => ideal,

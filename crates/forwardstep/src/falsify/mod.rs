@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(crate) use attack::{Attack, Target};
 pub(crate) use case::Case;
 pub(crate) use judge::{Failure, Verdict};
-pub(crate) use own::{GROWS, OwnAttack, OwnFound};
+pub(crate) use own::{GROWS, NoAttack, OwnAttack, OwnFound};
 
 /// What became of many cases.
 #[derive(Clone, Debug, Default)]

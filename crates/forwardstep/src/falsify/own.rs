@@ -20,7 +20,7 @@ use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
 use super::case::hundredths;
-use super::judge::{grown, run};
+use super::judge::{grown, run_unless};
 
 /// The disagreement grows where more than this many times that of the start is left.
 pub(crate) const GROWS: f64 = 10.0;
@@ -28,6 +28,8 @@ pub(crate) const GROWS: f64 = 10.0;
 const PATIENCE: u32 = 25;
 /// What is made smaller keeps this part of what was left.
 const KEEPS: f64 = 0.999;
+/// One run of the references as they are stated may take as long, whatever the search may.
+const STATED: Duration = Duration::from_secs(5);
 
 /// A scenario under attack.
 pub(crate) struct OwnAttack<'a> {
@@ -82,6 +84,12 @@ pub(crate) enum NoAttack {
         "nothing of a disagreement can be measured: agents start together, or a run of their references does not complete"
     )]
     Silent,
+    /// There is no time for a single run.
+    #[error("one run of its references takes longer than `--seconds`; give more, or let `time.end_s` be shorter")]
+    TakesLonger,
+    /// Somebody stopped it.
+    #[error("it was stopped before its references had run once")]
+    Stopped,
 }
 
 /// What can be varied, and how far.
@@ -98,20 +106,31 @@ impl OwnAttack<'_> {
     /// [`NoAttack`] says why the scenario cannot be attacked.
     pub(crate) fn search(&self, stopped: &dyn Fn() -> bool) -> Result<OwnFound, NoAttack> {
         let bounds = self.bounds()?;
-        let stated = left(&self.scenario.setup).ok_or(NoAttack::Silent)?;
+        let (started, most) = (Instant::now(), self.limit.max(STATED));
+        let stated = left(&self.scenario.setup, &|| stopped() || started.elapsed() >= most).ok_or_else(|| {
+            match (stopped(), started.elapsed() >= most) {
+                (true, _) => NoAttack::Stopped,
+                (false, true) => NoAttack::TakesLonger,
+                (false, false) => NoAttack::Silent,
+            }
+        })?;
         let started = Instant::now();
         let goes_on = || started.elapsed() < self.limit && !stopped();
+        let ends = || !goes_on();
+        // What was found late is made small for half as long again.
+        let latest = self.limit.saturating_add(self.limit / 2);
+        let is_late = || stopped() || started.elapsed() >= latest;
         let rng = &mut ChaCha8Rng::seed_from_u64(self.seed);
         let (mut worst, mut tried) = ((Rewired::default(), stated), 0);
         let fails = |left: &Left| left.grew || (!left.of_interval && left.part > GROWS);
         while goes_on() && !fails(&worst.1) {
             let mut best = (self.draw(&bounds, rng), None::<Left>);
-            best.1 = self.left(&best.0);
+            best.1 = self.left(&best.0, &ends);
             let mut idle = 0;
             while idle < PATIENCE && goes_on() {
                 let other = self.changed(&bounds, &best.0, rng);
                 tried += 1;
-                match (self.left(&other), best.1) {
+                match (self.left(&other, &ends), best.1) {
                     (Some(found), Some(known)) if found.part <= known.part => idle += 1,
                     (Some(found), _) => (best, idle) = ((other, Some(found)), 0),
                     (None, _) => idle += 1,
@@ -126,7 +145,7 @@ impl OwnAttack<'_> {
                 worst = (plan, found);
             }
         }
-        let (plan, worst) = self.smallest(worst, stopped);
+        let (plan, worst) = self.smallest(worst, &is_late);
         let text = rewired(&self.scenario.source, &plan).ok_or(NoAttack::Nothing)?;
         let scenario = self.read(&plan).ok_or(NoAttack::Silent)?;
         let report = check(&scenario.setup);
@@ -197,7 +216,7 @@ impl OwnAttack<'_> {
         let least = if found.of_interval || found.part <= GROWS { KEEPS * found.part } else { GROWS };
         loop {
             let smaller = smaller(&plan).into_iter().take_while(|_| !stopped()).find_map(|plan| {
-                let left = self.left(&plan)?;
+                let left = self.left(&plan, stopped)?;
                 (left.part >= least && left.grew == found.grew).then_some((plan, left))
             });
             match smaller {
@@ -207,8 +226,8 @@ impl OwnAttack<'_> {
         }
     }
 
-    fn left(&self, plan: &Rewired) -> Option<Left> {
-        left(&self.read(plan)?.setup)
+    fn left(&self, plan: &Rewired, stopped: &dyn Fn() -> bool) -> Option<Left> {
+        left(&self.read(plan)?.setup, stopped)
     }
 
     /// The scenario with another network, its other files as they were read.
@@ -254,9 +273,9 @@ fn without<T: Copy>(all: &[T], gone: usize) -> Vec<T> {
 }
 
 /// What is left of the references of a setup at its end; nothing where that cannot be measured.
-fn left(setup: &Setup) -> Option<Left> {
+fn left(setup: &Setup, stopped: &dyn Fn() -> bool) -> Option<Left> {
     let ideal = ideal(setup).ok()?;
-    let outcome = run(&ideal).ok()?;
+    let outcome = run_unless(&ideal, stopped).ok()?;
     if let Ok(spread) = CascadeSpread::of(&ideal, &outcome.recording) {
         let widths = spread.widths();
         let part = widths.last()? / widths.first()?;

@@ -29,6 +29,11 @@ pub trait DiskFile: Write + Send {
     /// # Errors
     /// As the system has it. What was written before is lost then, whatever a second attempt says.
     fn sync(&mut self) -> io::Result<()>;
+    /// Cuts off all behind so many bytes. Nothing is written after that.
+    ///
+    /// # Errors
+    /// As the system has it.
+    fn cut(&mut self, bytes: u64) -> io::Result<()>;
 }
 
 /// The disk of the operating system.
@@ -38,6 +43,10 @@ pub(crate) struct SystemDisk;
 impl DiskFile for File {
     fn sync(&mut self) -> io::Result<()> {
         self.sync_all()
+    }
+
+    fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.set_len(bytes)
     }
 }
 

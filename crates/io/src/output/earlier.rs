@@ -13,7 +13,7 @@ use super::folder::SEAL;
 use super::inputs::file_digest;
 use super::journal::JOURNAL;
 use super::summary::TableFile;
-use crate::files::read_text;
+use crate::files::{MOST_BYTES, read_text};
 
 /// The files that nothing else holds.
 const OWN: [&str; 6] =
@@ -68,12 +68,17 @@ pub(super) fn may_be_replaced(folder: &Path) -> Result<(), OutputError> {
         if path.symlink_metadata().is_err() {
             continue;
         }
-        let written = if name == OWN[0] {
-            Some(&earlier.scenario.digest_blake3)
-        } else {
-            earlier.tables.iter().find(|table| table.file == name).map(|table| &table.digest_blake3)
+        let table = earlier.tables.iter().find(|table| table.file == name);
+        let written = match table {
+            _ if name == OWN[0] => Some(&earlier.scenario.digest_blake3),
+            table => table.map(|table| &table.digest_blake3),
         };
-        if written.is_none() || file_digest(&path).ok().as_ref() != written {
+        // Something long is not read only to find out that it is longer than what was written.
+        let length = path.metadata().map_or(0, |found| found.len());
+        let most = if name == OWN[0] { Some(MOST_BYTES) } else { None };
+        let is_other = table.and_then(|table| table.bytes).is_some_and(|bytes| bytes != length)
+            || most.is_some_and(|most| length > most);
+        if is_other || written.is_none() || file_digest(&path).ok().as_ref() != written {
             return Err(OutputError::Changed { path });
         }
     }

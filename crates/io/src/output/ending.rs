@@ -28,6 +28,14 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
     }
 }
 
+/// How fast the closed loop is and because of what, of a run that broke down since it asks for short steps and is stiff.
+pub fn stiff_words(setup: &Setup, ending: &Ending) -> Option<String> {
+    let Ending::BrokeDown(breakdown) = ending else { return None };
+    let BreakdownCause::StepUnderFloor { step_s, stiffness: Some(stiffness) } = &breakdown.cause else { return None };
+    let is_stiff = stiffness.explains(*step_s) || stiffness.forbids(setup.solver.min_step_s);
+    is_stiff.then(|| because(setup, breakdown, true, stiffness, ""))
+}
+
 /// What happened to the signal that broke a run.
 fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
     match &breakdown.cause {

@@ -43,6 +43,22 @@ pub enum OutputError {
         /// The folder.
         path: PathBuf,
     },
+    /// The folder was renamed or removed since, and another has its name.
+    #[error("{} is another folder by now: that of this run was renamed or removed while it went on{}", shown(path), is_now(now.as_deref()))]
+    Elsewhere {
+        /// What it was called.
+        path: PathBuf,
+        /// What it is called now, where the system tells.
+        now: Option<PathBuf>,
+    },
+    /// Something stands where a file of the run or a folder for some has to be.
+    #[error("{} is {found}, where a run has to write", shown(path))]
+    InTheWay {
+        /// What stands there.
+        path: PathBuf,
+        /// What it is.
+        found: &'static str,
+    },
     /// The operating system refused.
     #[error("could not {action} {}: {source}", shown(path))]
     Io {
@@ -111,6 +127,11 @@ impl std::fmt::Display for Action {
     }
 }
 
+/// Where a folder is, at the end of a sentence.
+fn is_now(folder: Option<&std::path::Path>) -> String {
+    folder.map_or_else(String::new, |folder| format!(" and is {} now", shown(folder)))
+}
+
 impl OutputError {
     /// What the user can do about it.
     pub fn help(&self) -> Option<&'static str> {
@@ -130,6 +151,14 @@ impl OutputError {
             }
             OutputError::NotAFolder { .. } => Some("choose another folder"),
             OutputError::FolderInUse { .. } => Some("wait until it has ended, or choose another folder with --out"),
+            OutputError::Elsewhere { now: Some(_), .. } => Some(
+                "nothing was written there: what this run kept is in `rows.journal` in its folder, and `forwardstep report` of that writes the \
+                 files from it",
+            ),
+            OutputError::Elsewhere { now: None, .. } => Some(
+                "nothing was written there: if the folder was renamed, `forwardstep report` of it under its new name writes the files",
+            ),
+            OutputError::InTheWay { .. } => Some("move it elsewhere, or choose another folder"),
             OutputError::Io { action, source, .. } => match source.kind() {
                 io::ErrorKind::PermissionDenied => Some("choose a folder you may write to"),
                 io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {

@@ -1,12 +1,11 @@
 //! The folder of a run, and files that appear in it only when they are complete.
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::thread;
-use std::time::Duration;
 
+use super::claim::{Claim, Stands};
 use super::comparison::{DOCUMENT, PAGE};
 use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
@@ -17,10 +16,6 @@ use crate::scenario::run_folder::MANIFEST;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
 pub(super) const SEAL: &str = "summary.json";
-
-/// Between attempts to lock a folder.
-const PAUSES: [Duration; 4] =
-    [Duration::from_millis(2), Duration::from_millis(10), Duration::from_millis(40), Duration::from_millis(100)];
 
 /// Every file that a run may write, but for the copies of its inputs.
 pub(crate) const FILES: [&str; 14] = [
@@ -49,8 +44,7 @@ pub struct RunFolder {
     path: PathBuf,
     /// Folders that were made, innermost first.
     made: Vec<PathBuf>,
-    /// Held open for its lock, which ends with the process at the latest.
-    _lock: Option<File>,
+    claim: Claim,
     disk: Arc<dyn Disk>,
 }
 
@@ -90,7 +84,7 @@ impl RunFolder {
         force: bool,
         may_be_replaced: fn(&Path) -> Result<(), OutputError>,
     ) -> Result<RunFolder, OutputError> {
-        let mut folder = RunFolder { path, made: Vec::new(), _lock: None, disk };
+        let mut folder = RunFolder { path, made: Vec::new(), claim: Claim::none(), disk };
         let path = &folder.path;
         match fs::metadata(path) {
             Ok(meta) if !meta.is_dir() => return Err(OutputError::NotAFolder { path: path.clone() }),
@@ -102,13 +96,14 @@ impl RunFolder {
                 fs::create_dir_all(path).map_err(io_error(Action::CreateFolder, path))?;
             }
         }
-        folder._lock = lock(path)?;
+        folder.claim = Claim::of(path)?;
         if !is_empty(path, false)? {
             if !force {
                 return Err(OutputError::FolderNotEmpty { path: path.clone() });
             }
             may_be_replaced(path)?;
         }
+        in_the_way(path, FILES.into_iter().chain([JOURNAL, PAGE, DOCUMENT]))?;
         folder.probe()?;
         Ok(folder)
     }
@@ -122,7 +117,11 @@ impl RunFolder {
         if !path.is_dir() {
             return Err(OutputError::NotAFolder { path });
         }
-        let folder = RunFolder { _lock: lock(&path)?, path, made: Vec::new(), disk: Arc::new(SystemDisk) };
+        let folder = RunFolder { claim: Claim::of(&path)?, path, made: Vec::new(), disk: Arc::new(SystemDisk) };
+        in_the_way(
+            &folder.path,
+            FILES.into_iter().filter(|name| name.starts_with("plots/") || *name == "report.html"),
+        )?;
         folder.probe()?;
         Ok(folder)
     }
@@ -146,9 +145,24 @@ impl RunFolder {
 
     /// Whether a run writes into `path` now; nothing where the system cannot tell.
     pub fn is_in_use(path: &Path) -> Option<bool> {
-        match try_lock(path) {
-            Ok(lock) => lock.map(|_| false),
-            Err(_) => Some(true),
+        Claim::is_taken(path)
+    }
+
+    /// Whether its path leads to another folder by now. Nothing may be written or removed there: it may be that of another run.
+    pub fn is_elsewhere(&self) -> bool {
+        self.claim.stands(&self.path) == Stands::Elsewhere
+    }
+
+    /// Refuses when its path leads to another folder by now. One that was taken away altogether is made anew: who tidies up during a run
+    /// of hours must not lose it.
+    pub(super) fn ready(&self) -> Result<(), OutputError> {
+        match self.claim.stands(&self.path) {
+            Stands::Here => Ok(()),
+            Stands::Elsewhere => Err(OutputError::Elsewhere { path: self.path.clone(), now: self.claim.now() }),
+            Stands::Gone => {
+                self.disk.create_folders(&self.path).map_err(io_error(Action::CreateFolder, &self.path))?;
+                self.claim.renew(&self.path)
+            }
         }
     }
 
@@ -172,6 +186,10 @@ impl RunFolder {
 
 impl Drop for RunFolder {
     fn drop(&mut self) {
+        // An empty folder under its name may be that of a run which has just begun.
+        if self.is_elsewhere() {
+            return;
+        }
         for folder in &self.made {
             let _ = fs::remove_dir(folder); // only succeeds when it is empty
         }
@@ -182,27 +200,6 @@ impl Drop for RunFolder {
 fn missing_folders(path: &Path) -> Vec<PathBuf> {
     let named = path.ancestors().filter(|folder| !folder.as_os_str().is_empty());
     named.take_while(|folder| !folder.exists()).map(Path::to_owned).collect()
-}
-
-/// Keeps other runs out. Who only looks whether a folder is in use has it for a moment, and so has who is ending: that is waited for.
-fn lock(path: &Path) -> Result<Option<File>, OutputError> {
-    for pause in PAUSES {
-        match try_lock(path) {
-            Err(_) => thread::sleep(pause),
-            locked => return locked,
-        }
-    }
-    try_lock(path)
-}
-
-/// Systems and disks that cannot lock a folder go without.
-fn try_lock(path: &Path) -> Result<Option<File>, OutputError> {
-    let Ok(folder) = File::open(path) else { return Ok(None) };
-    match folder.try_lock() {
-        Ok(()) => Ok(Some(folder)),
-        Err(TryLockError::WouldBlock) => Err(OutputError::FolderInUse { path: path.to_owned() }),
-        Err(TryLockError::Error(_)) => Ok(None),
-    }
 }
 
 /// Nothing but leftovers under temporary names, and the folders for plots and inputs if they hold nothing else either. Inputs
@@ -233,6 +230,27 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
     Ok(true)
 }
 
+/// Refuses where something stands under the names of files that no file can take the place of, so that the run does not fail at its end:
+/// folders, and files where a folder has to be.
+fn in_the_way<'n>(path: &Path, names: impl Iterator<Item = &'n str>) -> Result<(), OutputError> {
+    let way = |path: PathBuf, found: &'static str| Err(OutputError::InTheWay { path, found });
+    for name in names {
+        let (above, file) = name.rsplit_once('/').map_or(("", name), |(above, file)| (above, file));
+        let above = path.join(above);
+        if above.metadata().map_or_else(|_| above.is_symlink(), |found| !found.is_dir()) {
+            return way(above, "no folder");
+        }
+        for name in [file.to_owned(), format!(".{file}.partial")] {
+            let file = above.join(name);
+            // The file takes the place of a link, not of what that leads to.
+            if file.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+                return way(file, "a folder");
+            }
+        }
+    }
+    Ok(())
+}
+
 pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
     let path = path.to_owned();
     move |source| OutputError::Io { action, path, source }
@@ -245,12 +263,13 @@ pub(crate) struct Staging<'f> {
 }
 
 impl Staging<'_> {
-    /// Writes one file under its temporary name, to the disk; its digest.
+    /// Writes one file under its temporary name, to the disk.
     pub(crate) fn write(
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
-    ) -> Result<blake3::Hash, OutputError> {
+    ) -> Result<Written, OutputError> {
+        self.folder.ready()?;
         let (disk, path) = (self.folder.disk(), self.folder.path.join(name));
         let partial = self.folder.partial(name);
         if let Some(parent) = partial.parent() {
@@ -268,13 +287,13 @@ impl Staging<'_> {
             (None, FillError::Encode(reason)) => OutputError::Encode { path, reason },
         };
         match filled {
-            Ok(()) => Ok(staged.digest.finalize()),
+            Ok(()) => Ok(Written { digest: staged.digest.finalize(), bytes: staged.digest.count() }),
             Err(error) => Err(failed(error)),
         }
     }
 
     /// Writes a text.
-    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<blake3::Hash, OutputError> {
+    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<Written, OutputError> {
         self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
     }
 
@@ -282,6 +301,7 @@ impl Staging<'_> {
     /// when all of them would survive a power cut, unless it `keeps` something that they have not.
     pub(crate) fn publish(mut self, keeps: bool) -> Result<Vec<PathBuf>, OutputError> {
         let folder = self.folder;
+        folder.ready()?;
         let earlier = inputs::of_earlier_run(&folder.path);
         let remove = |name: &str| {
             let path = folder.path.join(name);
@@ -317,6 +337,7 @@ impl Staging<'_> {
         let folder = self.folder;
         let mut published = Vec::new();
         for name in &self.names {
+            folder.ready()?;
             let path = folder.path.join(name);
             folder.disk().rename(&folder.partial(name), &path).map_err(io_error(Action::RenameFile, &path))?;
             published.push(path);
@@ -327,11 +348,20 @@ impl Staging<'_> {
 
 impl Drop for Staging<'_> {
     fn drop(&mut self) {
+        if self.folder.is_elsewhere() {
+            return;
+        }
         for name in &self.names {
             let _ = self.folder.disk().remove_file(&self.folder.partial(name));
             self.folder.remove_empty_above(name);
         }
     }
+}
+
+/// What was written.
+pub(crate) struct Written {
+    pub(crate) digest: blake3::Hash,
+    pub(crate) bytes: u64,
 }
 
 /// Why a file could not be filled.

@@ -25,6 +25,7 @@
 //! `timings` object of `summary.json` is the same for the same run, bit for bit.
 
 mod certificate;
+mod claim;
 mod comparison;
 mod conclusion;
 mod csv;
@@ -79,12 +80,12 @@ pub use comparison::{COMPARISON_FORMAT, Compared, ComparedCell, ComparedRow, Com
 pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
 pub use disk::{Disk, DiskFile};
-pub use ending::ending_sentence;
+pub use ending::{ending_sentence, stiff_words};
 pub use error::{Action, EncodeError, OutputError};
 pub use explanation::{EXPLANATION_FORMAT, TextLine, explanation_document, explanation_latex, explanation_lines};
 pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
-use folder::Staging;
+use folder::{Staging, Written};
 pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
 pub use injected::{FirstInjection, Injected};
 pub use journal::{Journal, JournalError};
@@ -158,8 +159,9 @@ fn write_all(
         staging.write(MANIFEST, |out| Ok(std::io::Write::write_all(out, listed?.as_bytes())?))?;
     }
     let mut tables = Vec::new();
-    let mut table = |file: &str, digest: blake3::Hash| {
-        tables.push(summary::TableFile { file: file.into(), digest_blake3: digest.to_hex().to_string() });
+    let mut table = |file: &str, Written { digest, bytes }: Written| {
+        let digest_blake3 = digest.to_hex().to_string();
+        tables.push(summary::TableFile { file: file.into(), digest_blake3, bytes: Some(bytes) });
     };
     table(PARQUET, staging.write(PARQUET, |out| Ok(parquet::write(out, record)?))?);
     if options.csv {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::CSV;
 use super::journal::JOURNAL;
+use crate::shown;
 
 /// What is no longer as it was at the time of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,8 +64,9 @@ impl fmt::Display for Remark {
             ),
             Remark::InputChanged { name } => write!(
                 f,
-                "`{name}`, which the scenario names, is not what it was at the time of the run; the signals are those of the \
-                 run, verdicts and limits follow the file"
+                "`{}`, which the scenario names, is not what it was at the time of the run; the signals are those of the \
+                 run, verdicts and limits follow the file",
+                shown(name)
             ),
             Remark::FromJournal { rows, cut_off: true } => write!(
                 f,
@@ -79,9 +81,9 @@ impl fmt::Display for Remark {
             }
             Remark::StillRunning => f.write_str("the run is still going on; this is what its journal has until now"),
             Remark::OtherCsv => write!(f, "{CSV} is not as the run wrote it; its numbers are shown as they are"),
-            Remark::ColumnsMissing { first, count: 1 } => write!(f, "the tables have no column `{first}`"),
+            Remark::ColumnsMissing { first, count: 1 } => write!(f, "the tables have no column `{}`", shown(first)),
             Remark::ColumnsMissing { first, count } => {
-                write!(f, "the tables have no column `{first}` and lack {} more", count - 1)
+                write!(f, "the tables have no column `{}` and lack {} more", shown(first), count - 1)
             }
             Remark::ShapesDamaged => {
                 f.write_str("shapes.json, which says what the robots look like, cannot be read; they are drawn as capsules")
@@ -93,7 +95,7 @@ impl fmt::Display for Remark {
                 "the run was written in an earlier format; it is shown under the names that `forwardstep upgrade` gives",
             ),
             Remark::OtherVersion { simulated, now } => {
-                write!(f, "simulated by forwardstep {simulated}; this page was made by forwardstep {now}")
+                write!(f, "simulated by forwardstep {}; this page was made by forwardstep {now}", shown(simulated))
             }
         }
     }

@@ -15,6 +15,7 @@ use super::summary::FORMAT;
 use crate::files::ReadError;
 use crate::scenario::ScenarioError;
 use crate::shown;
+use crate::shown::one_line;
 
 /// A folder that no report can be built from.
 #[derive(Debug, Error)]
@@ -53,7 +54,7 @@ pub enum RestoreError {
         reason: ReadError,
     },
     /// Its summary is not one.
-    #[error("`{}`: {reason}", shown(path))]
+    #[error("`{}`: {}", shown(path), one_line(reason))]
     Summary {
         /// The file.
         path: PathBuf,
@@ -61,7 +62,7 @@ pub enum RestoreError {
         reason: SummaryError,
     },
     /// The journal of the run that was cut off cannot be used.
-    #[error("`{}`: {reason}", shown(path))]
+    #[error("`{}`: {}", shown(path), one_line(reason))]
     Journal {
         /// The file.
         path: PathBuf,
@@ -72,7 +73,7 @@ pub enum RestoreError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// Its scenario cannot be simulated.
-    #[error("`{}`: {reason}", shown(path))]
+    #[error("`{}`: {}", shown(path), one_line(reason))]
     Setup {
         /// The file.
         path: PathBuf,
@@ -80,7 +81,7 @@ pub enum RestoreError {
         reason: Box<SetupError>,
     },
     /// Its table cannot be used.
-    #[error("`{}`: {reason}", shown(path))]
+    #[error("`{}`: {}", shown(path), one_line(reason))]
     Table {
         /// The file.
         path: PathBuf,
@@ -99,7 +100,7 @@ pub enum RestoreError {
 #[non_exhaustive]
 pub enum SummaryError {
     /// It is not what a run writes.
-    #[error("not a summary as runs write it: {0}")]
+    #[error("not a summary as runs write it: {}", one_line(.0))]
     Unreadable(#[from] serde_json::Error),
     /// A later version wrote it.
     #[error("its format is {found}, and this version of forwardstep reads formats up to {FORMAT}")]
@@ -108,13 +109,13 @@ pub enum SummaryError {
         found: u32,
     },
     /// The copy of an input stands outside of the folder.
-    #[error("it says that the copy of an input is `{file}`, which is not in `inputs/`")]
+    #[error("it says that the copy of an input is `{}`, which is not in `inputs/`", shown(file))]
     Copy {
         /// The name it gives.
         file: String,
     },
     /// It says that something broke down which the scenario does not have.
-    #[error("it says that {column} broke down, and the scenario has no such signal")]
+    #[error("it says that {} broke down, and the scenario has no such signal", shown(column))]
     Breakdown {
         /// The signal, or what there is instead.
         column: String,
@@ -135,13 +136,13 @@ pub enum TableError {
     #[error(transparent)]
     Csv(#[from] csv::Error),
     /// A column holds something else than numbers.
-    #[error("the column `{column}` does not hold a number in every row")]
+    #[error("the column `{}` does not hold a number in every row", shown(column))]
     NotNumbers {
         /// Its name.
         column: String,
     },
     /// A field is no number.
-    #[error("line {line}: `{found}` in the column `{column}` is no number")]
+    #[error("line {line}: `{}` in the column `{}` is no number", shown(found), shown(column))]
     NotANumber {
         /// Its line, from one.
         line: u64,
@@ -151,19 +152,19 @@ pub enum TableError {
         found: String,
     },
     /// Two columns have one name.
-    #[error("there are two columns `{column}`")]
+    #[error("there are two columns `{}`", shown(column))]
     ColumnTwice {
         /// The name.
         column: String,
     },
     /// A column that no run of the scenario has.
-    #[error("no run of the scenario records the column `{column}`")]
+    #[error("no run of the scenario records the column `{}`", shown(column))]
     UnknownColumn {
         /// Its name.
         column: String,
     },
     /// A column that every run has is not there.
-    #[error("there is no column `{column}`")]
+    #[error("there is no column `{}`", shown(column))]
     MissingColumn {
         /// Its name.
         column: String,

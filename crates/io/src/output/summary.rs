@@ -105,6 +105,9 @@ pub struct TableFile {
     pub file: String,
     /// The BLAKE3 digest of the file, in hexadecimal.
     pub digest_blake3: String,
+    /// How long the file is, in bytes; not said by earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
 }
 
 /// What indices of agents and axes refer to.

@@ -17,7 +17,7 @@ use super::kinds::schedules::ScheduleKind;
 use super::kinds::{AgentReferenceTable, Kinds, LawKind, ReferenceKind, RobotKind};
 use super::problem::ScenarioProblem;
 use super::robots::Stop;
-use super::value_problem::ValueProblem;
+use super::value_problem::{ValueProblem, is_too_deep};
 use crate::{Meant, SourceText};
 
 /// A scenario file as TOML.
@@ -50,7 +50,7 @@ impl<'i> Document<'i> {
                 return Fault::new(ScenarioProblem::Meant { meant, file: source.name().to_owned() });
             }
             let fault = Fault::new(ValueProblem::Unreadable { message: error.message().to_owned() });
-            match error.span() {
+            match error.span().or_else(|| is_too_deep(error.message()).then(|| deepest_bracket(source.text()))) {
                 Some(span) => fault.at(&span),
                 None => fault,
             }
@@ -68,6 +68,9 @@ impl<'i> Document<'i> {
     pub(super) fn format(&self) -> Result<At<i64>, Fault> {
         match self.root.get_ref().get("format") {
             Some(value) => At::deserialize(ValueDe { value, kinds: &Kinds::default() }),
+            None if self.root.get_ref().as_table().is_some_and(|table| table.is_empty()) => {
+                Err(Fault::new(ScenarioProblem::NothingWritten))
+            }
             None => Err(Fault::new(ValueProblem::MissingKey { key: "format" })),
         }
     }
@@ -177,6 +180,37 @@ impl<'i> Document<'i> {
     fn entry(&self, entry: usize) -> Option<&Spanned<DeValue<'i>>> {
         self.root.get_ref().get("agents")?.get_ref().get(entry)
     }
+}
+
+/// The place of the innermost bracket, as far as that can be told of a text that was not read: brackets in texts and comments do not count.
+/// Where no brackets nest, it is the line whose key has the most dots.
+fn deepest_bracket(text: &str) -> Range<usize> {
+    /// Scenarios have brackets nested so deeply, and parsers take more.
+    const FEW: usize = 16;
+    let (mut depth, mut deepest, mut place) = (0_usize, 0, 0);
+    let (mut quote, mut is_comment) = (None, false);
+    for (at, c) in text.char_indices() {
+        match (c, quote) {
+            ('\n', _) => (quote, is_comment) = (None, false),
+            _ if is_comment => {}
+            (c, Some(open)) => quote = quote.filter(|_| c != open),
+            ('"' | '\'', None) => quote = Some(c),
+            ('#', None) => is_comment = true,
+            ('[' | '{', None) => depth += 1,
+            (']' | '}', None) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth > deepest {
+            (deepest, place) = (depth, at);
+        }
+    }
+    if deepest < FEW {
+        let dots = |line: &str| line.matches('.').count();
+        let lines =
+            text.split_inclusive('\n').scan(0, |at, line| Some((std::mem::replace(at, *at + line.len()), dots(line))));
+        place = lines.max_by_key(|(_, dots)| *dots).map_or(0, |(at, _)| at);
+    }
+    place..(place + 1).min(text.len())
 }
 
 /// How far `path` leads from `value` inwards, and the place of what is there. The simulator does not know under which key

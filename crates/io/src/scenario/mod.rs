@@ -98,7 +98,7 @@ pub use goal::Goal;
 pub use inputs::{InputFile, Inputs};
 pub use network_problem::NetworkProblem;
 pub use notice::Notice;
-pub use open::{OpenError, open_scenario};
+pub use open::{OpenError, open_scenario, open_text};
 pub use problem::ScenarioProblem;
 pub use push_problem::PushProblem;
 pub use rewired::{Rewired, StatedNetwork, rewired, stated_network};

@@ -14,6 +14,9 @@ use crate::shown;
 use crate::shown::one_line;
 use crate::wording::choose;
 
+/// The rows of a run that goes on, or was cut off.
+const JOURNAL: &str = "rows.journal";
+
 /// Why there is no scenario to run.
 #[derive(Clone, Debug, Error)]
 pub enum OpenError {
@@ -55,6 +58,23 @@ impl Diagnostic for OpenError {
                 let shipped: Vec<&str> = SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name).collect();
                 let text = choose(name, "shipped scenarios are", &shipped);
                 Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-network.toml`")))
+            }
+            OpenError::File { path, reason: ReadError::Missing } if path.is_symlink() => {
+                Some(Box::new("it is a link to something that is not there"))
+            }
+            OpenError::File { path, reason: ReadError::Folder } if path.join(JOURNAL).exists() => {
+                let folder = shown(path);
+                Some(Box::new(format!(
+                    "it is the folder of a run that was cut off: `forwardstep report {folder}` first writes all its files, the scenario among them"
+                )))
+            }
+            OpenError::File { path, reason: ReadError::Folder } => {
+                let known = neighbours(&path.join(run_folder::SCENARIO), "toml");
+                let text = match known.is_empty() {
+                    true => "give a scenario file, or the folder of a run, which holds `scenario.toml`".to_owned(),
+                    false => choose("", "name a file in it: there are", &known),
+                };
+                Some(Box::new(text))
             }
             OpenError::File { path, reason: ReadError::Missing } => {
                 let known = neighbours(path, "toml");
@@ -106,6 +126,15 @@ impl Kinds {
     pub fn open_scenario(&self, name_or_path: &str) -> Result<Scenario, OpenError> {
         open(name_or_path, self)
     }
+}
+
+/// The text of the file at this path, unless it is clearly something else than a scenario.
+///
+/// # Errors
+/// [`OpenError`] when it cannot be read.
+pub fn open_text(path: &Path) -> Result<SourceText, OpenError> {
+    let text = read_text(path).map_err(|reason| OpenError::File { path: path.to_owned(), reason })?;
+    Ok(SourceText::new(path.display().to_string(), text))
 }
 
 fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {

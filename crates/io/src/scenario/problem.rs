@@ -33,6 +33,9 @@ pub enum ScenarioProblem {
         /// The file.
         file: String,
     },
+    /// A file that is empty, or holds comments only.
+    #[error("nothing is written in this file")]
+    NothingWritten,
     /// A text that is clearly something else.
     #[error("this is {meant}, and no scenario")]
     Meant {
@@ -202,6 +205,9 @@ impl Problem for ScenarioProblem {
                 format!("`forwardstep upgrade {file}` converts it and prints what it renames")
             }
             ScenarioProblem::Format { found, .. } if *found > FORMAT => "use a later version of forwardstep".into(),
+            ScenarioProblem::NothingWritten => {
+                "`forwardstep new my-scenario.toml` writes a scenario to start from, and `forwardstep scenarios` lists those that are there".into()
+            }
             ScenarioProblem::Meant { meant, file } => meant.given_as_scenario(&shown(file).to_string()),
             ScenarioProblem::AgentName { .. } => "use up to 64 letters, digits, `-` and `_`".into(),
             ScenarioProblem::AgentTwice { .. } => {

@@ -48,9 +48,9 @@ pub(crate) fn is_copy(file: &str) -> bool {
     plain_name(file).is_some_and(|plain| plain == file && plain.starts_with(&format!("{INPUTS}/")))
 }
 
-/// Whether a path is a folder with a scenario.
+/// Whether a path is a folder with a scenario, or with something else in its place, which is then named.
 pub(super) fn is_run_folder(path: &Path) -> bool {
-    path.join(SCENARIO).is_file()
+    path.join(SCENARIO).symlink_metadata().is_ok()
 }
 
 /// Reads the scenario of a run's folder.

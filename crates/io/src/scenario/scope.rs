@@ -3,11 +3,26 @@
 /// Words that a wish is written with, each a whole word of a key, and what there is instead. The first row that fits counts.
 const WISHES: &[(&[&str], &str)] = &[
     (
-        &["obstacle", "obstacles", "collision", "collisions", "avoidance", "avoid", "environment", "walls", "wall"],
+        &[
+            "obstacle",
+            "obstacles",
+            "collision",
+            "collisions",
+            "avoidance",
+            "avoid",
+            "environment",
+            "walls",
+            "wall",
+            "safety",
+            "safe",
+            "distance",
+            "distances",
+            "separation",
+        ],
         "robots and obstacles pass through each other; position limits of a URDF can be enforced (`enforce_limits`)",
     ),
     (
-        &["contact", "contacts", "ground", "grasp", "touch", "impact"],
+        &["contact", "contacts", "ground", "grasp", "touch", "impact", "terrain", "floor", "slope"],
         "nothing touches anything; what pushes a robot is given as a course in time: `[[external_wrenches]]`",
     ),
     (
@@ -60,6 +75,9 @@ mod tests {
         for (word, part) in [
             ("obstacles", "position limits"),
             ("collision_avoidance", "position limits"),
+            ("safety", "position limits"),
+            ("min_distance_m", "position limits"),
+            ("terrain", "[[external_wrenches]]"),
             ("floating_base", "`robot.vehicle`"),
             ("Contact", "[[external_wrenches]]"),
             ("camera-rate", "`[control]`"),

@@ -227,6 +227,10 @@ impl ValueProblem {
             ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
+            ValueProblem::MissingKey { key } => return missing(key).map(str::to_owned),
+            ValueProblem::Unreadable { message } if is_too_deep(message) => {
+                "no value of a scenario is a list of lists of lists of lists, or a table nested so deeply".into()
+            }
             ValueProblem::ChoiceNeedsValue { choice } => format!("write it with its value: {{ {choice} = … }}"),
             ValueProblem::ChoiceTakesNoValue { choice } => format!("write it as a text: \"{choice}\""),
             ValueProblem::Formula(problem) => return problem.help(),
@@ -235,6 +239,29 @@ impl ValueProblem {
         };
         Some(text)
     }
+}
+
+/// Whether the parser gave up on brackets within brackets.
+pub(super) fn is_too_deep(message: &str) -> bool {
+    message.contains("recurs")
+}
+
+/// What to write where a key is missing that every scenario has.
+fn missing(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "format" => {
+            "write `format = 2` in the first line; `forwardstep new my-scenario.toml` writes a whole scenario to start from"
+        }
+        "title" => "say in a line what the scenario shows: `title = \"Two arms agree\"`",
+        "time" => "say how long to simulate: `time = { end_s = 10 }`",
+        "end_s" => "say how long to simulate, in s: `end_s = 10`",
+        "agents" => "every robot, or number of robots that are alike, is an entry `[[agents]]`",
+        "network" => "say who hears whom: `[network]` with `edges.ring = {}`, for instance",
+        "reference" => {
+            "say what the robots are to do: `[reference.consensus]` to agree, `[reference.leader]` to follow a leader, `[reference.tracking]` targets"
+        }
+        _ => return None,
+    })
 }
 
 /// What there is instead of a word; of what is not modelled that it is not, unless it is a slip.

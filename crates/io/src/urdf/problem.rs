@@ -341,6 +341,11 @@ impl Problem for UrdfProblem {
             UrdfProblem::NotPositiveDefinite { .. } => {
                 "give the body mass and inertia that resist its joint, or lock the joint".to_owned()
             }
+            UrdfProblem::NoLinks => "a robot is a tree of links, the outermost elements <link name=\"…\">, that joints hold together".to_owned(),
+            UrdfProblem::NothingMoves { locked: 0, .. } => {
+                "give a joint the type `revolute`, `continuous` or `prismatic`; what never moves has nothing to control".to_owned()
+            }
+            UrdfProblem::NothingMoves { .. } => "leave a joint unlocked; what never moves has nothing to control".to_owned(),
             UrdfProblem::LockFixed { .. } => "leave it out: it does not move anyway".to_owned(),
             _ => return None,
         };

@@ -186,9 +186,21 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
             "r.urdf:3:18: the inertia of link `arm` exceeds the range of double precision",
         ),
         // the tree
-        (robot(&[]), default(), "r.urdf: the robot has no links"),
-        (robot(&[BASE]), default(), "r.urdf: no joint moves (fixed: 0, locked: 0)"),
-        (robot(&[BASE, ARM, &joint("fixed", "")]), default(), "r.urdf: no joint moves (fixed: 1, locked: 0)"),
+        (
+            robot(&[]),
+            default(),
+            "r.urdf: the robot has no links\n  help: a robot is a tree of links, the outermost elements <link name=\"…\">, that joints hold together",
+        ),
+        (
+            robot(&[BASE]),
+            default(),
+            "r.urdf: no joint moves (fixed: 0, locked: 0)\n  help: give a joint the type `revolute`, `continuous` or `prismatic`; what never moves has nothing to control",
+        ),
+        (
+            robot(&[BASE, ARM, &joint("fixed", "")]),
+            default(),
+            "r.urdf: no joint moves (fixed: 1, locked: 0)\n  help: give a joint the type `revolute`, `continuous` or `prismatic`; what never moves has nothing to control",
+        ),
         (
             robot(&[BASE, ARM, ARM, &turning]),
             default(),
@@ -292,7 +304,11 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
             locked(&[("turn", 0.0), ("turn", 1.0)]),
             "r.urdf:4:14: `turn` is locked twice, at 0 and at 1",
         ),
-        (robot(&[BASE, ARM, &turning]), locked(&[("turn", 0.0)]), "r.urdf: no joint moves (fixed: 0, locked: 1)"),
+        (
+            robot(&[BASE, ARM, &turning]),
+            locked(&[("turn", 0.0)]),
+            "r.urdf: no joint moves (fixed: 0, locked: 1)\n  help: leave a joint unlocked; what never moves has nothing to control",
+        ),
         (
             robot(&[
                 BASE,

@@ -112,7 +112,12 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<S
     }
     let status = tried.map_or(Status::Fine, |tried| told(&tried));
     if let Some(file) = &options.file {
-        console.line(format_args!("wrote {0}; next: forwardstep run {0}", shown(file)));
+        let file = shown(file);
+        match status {
+            Status::Fine => console.line(format_args!("wrote {file}; next: forwardstep run {file}")),
+            _ => console
+                .line(format_args!("wrote {file}; next: change what its first lines say, then forwardstep run {file}")),
+        }
     }
     Ok(status)
 }

@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep::io::output::{Disagreement, LimitKind, Metrics, ending_sentence, names};
+use forwardstep::io::output::{Disagreement, LimitKind, LimitReached, Metrics, ending_sentence, names, stiff_words};
 use forwardstep::io::scenario::{LawTemplate, Scenario, Template, Tuning};
-use forwardstep::sim::recording::BreakdownCause;
+use forwardstep::sim::recording::{BreakdownCause, Signal};
 use forwardstep::sim::{Ending, Setup, simulate};
 
 use crate::commands::progress::Bar;
@@ -55,8 +55,8 @@ pub(super) struct Tried {
 
 /// How one run went.
 enum Went {
-    /// The gap vanished; a joint left its limits on the way.
-    Well { goal: f64, gap: String, leaves: Option<String> },
+    /// The gap vanished; a joint left its limits on the way, or took more torque than it has.
+    Well { goal: f64, gap: String, leaves: Option<String>, exceeds: Option<String> },
     /// The gap falls, and would have vanished by then, s.
     TooShort { needs_s: f64, gap: String },
     /// Anything else, in words.
@@ -71,7 +71,7 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
     let tunings = if adapts { &TUNINGS[..] } else { &TUNINGS[..1] };
     let patience: &[f64] = if adapts { &LONGEST_S } else { &LONGEST_S[1..] };
     let tries = patience.iter().flat_map(|longest_s| tunings.iter().map(move |tuning| (*longest_s, *tuning)));
-    let (mut effort, mut says, mut second_best) = (EFFORT[1], Vec::new(), None);
+    let (mut effort, mut says, mut second_best) = (EFFORT[1], Said::default(), None);
     for (longest_s, tuning) in tries {
         if effort == 0 || (longest_s > LONGEST_S[0] && second_best.is_some()) {
             break;
@@ -80,16 +80,22 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
         let described = describe(tuning, adapts);
         loop {
             match run(&read(&candidate)?, &mut effort)? {
-                Went::Well { goal, gap, leaves } => {
+                Went::Well { goal, gap, leaves, exceeds } => {
                     candidate.goal = Some(goal);
-                    let Some(axis) = leaves else {
-                        says.push(format!("{described}{gap} after {} s", candidate.end_s));
-                        return Ok(Tried { template: candidate, works: true, says });
-                    };
-                    says.push(format!(
-                        "{described}{gap} after {} s, but {axis} leaves its limits on the way",
-                        candidate.end_s
-                    ));
+                    let leaves_limits = leaves.iter().map(|axis| format!("{axis} leaves its limits on the way"));
+                    let buts: Vec<String> = leaves_limits.chain(exceeds.clone()).collect();
+                    let but = if buts.is_empty() { String::new() } else { format!(", but {}", buts.join(", and ")) };
+                    says.push(format!("{described}{gap} after {} s{but}", candidate.end_s));
+                    // What is reported only, and not kept to, shows nothing of a robot that has no more.
+                    candidate.remarks.extend(exceeds.map(|exceeds| {
+                        format!(
+                            "In the trial {exceeds}: effort limits are not enforced in it. With `enforce_limits = true` in \
+                             [[agents]] the run keeps to them; slower gains or a nearer start need less."
+                        )
+                    }));
+                    if leaves.is_none() {
+                        return Ok(Tried { template: candidate, works: true, says: says.sentences });
+                    }
                     second_best.get_or_insert(candidate);
                 }
                 Went::TooShort { needs_s, .. } if needs_s <= longest_s && needs_s > candidate.end_s => {
@@ -108,9 +114,28 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
     }
     Ok(match second_best {
         // Limits of positions are reported, not enforced: the robots agree all the same.
-        Some(template) => Tried { template, works: true, says },
-        None => Tried { template, works: false, says },
+        Some(template) => Tried { template, works: true, says: says.sentences },
+        None => {
+            let mut template = template;
+            let usual = says.sentences.first().cloned().unwrap_or_default();
+            template.remarks.push(format!("No trial of this did what it should: {usual}"));
+            Tried { template, works: false, says: says.sentences }
+        }
     })
+}
+
+/// What was said, each sentence once: gains that fail alike are tried again with more patience.
+#[derive(Default)]
+struct Said {
+    sentences: Vec<String>,
+}
+
+impl Said {
+    fn push(&mut self, sentence: String) {
+        if !self.sentences.contains(&sentence) {
+            self.sentences.push(sentence);
+        }
+    }
 }
 
 /// The gains in words that begin a sentence.
@@ -170,7 +195,20 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
         let leaves = leaves.map(|limit| {
             format!("{} of {}", names::axis_name(setup, limit.agent, limit.axis), names::agent_name(setup, limit.agent))
         });
-        return Ok(Went::Well { goal, gap, leaves });
+        let exceeds = metrics.limits_reached.iter().filter(|limit| limit.kind == LimitKind::Effort && !limit.enforced);
+        // By how many times: that of an axis which has none at all first.
+        let times = |limit: &&LimitReached| (limit.worst / limit.limit).abs();
+        let exceeds = exceeds.max_by(|a, b| times(a).total_cmp(&times(b))).map(|limit| {
+            let unit = names::unit(setup, limit.agent, Signal::Torque, limit.axis);
+            format!(
+                "{} of {} takes {} {unit} where its effort limit is {} {unit}",
+                names::axis_name(setup, limit.agent, limit.axis),
+                names::agent_name(setup, limit.agent),
+                about(limit.worst.abs()),
+                about(limit.limit.abs()),
+            )
+        });
+        return Ok(Went::Well { goal, gap, leaves, exceeds });
     }
     if last.is_finite() && last < FALLS * largest {
         // As fast as from the largest to the last, and some more.
@@ -189,24 +227,49 @@ fn too_many(setup: &Setup, mean_s: f64) -> Option<Went> {
     coarse.solver.min_step_s = 2.0 * mean_s;
     let outcome = simulate(&coarse, &mut |_| ControlFlow::Continue(())).ok()?;
     let Ending::BrokeDown(breakdown) = &outcome.ending else { return None };
-    let BreakdownCause::StepUnderFloor { step_s, stiffness: Some(stiffness) } = &breakdown.cause else { return None };
-    let what = ending_sentence(&coarse, &outcome.ending);
+    let BreakdownCause::StepUnderFloor { stiffness: Some(stiffness), .. } = &breakdown.cause else { return None };
+    let why = stiff_words(&coarse, &outcome.ending)?;
     let own = stiffness.gains.is_some_and(|gains| gains.viscous_per_s > OWN * stiffness.rate_per_s);
-    let explains = stiffness.explains(*step_s) || stiffness.forbids(coarse.solver.min_step_s);
-    explains.then_some(if own { Went::Hopeless(what) } else { Went::Badly(what) })
+    // The trial did not break down, and a run might not: it was too long.
+    let (step_s, end_s) = (about(mean_s), setup.time.end_s);
+    let advice = match why.contains("`armature`") {
+        true => "",
+        false => {
+            "; links that are lighter than their drives make it so: state the `armature` of the joints, lock those that are so light, or lower the gains"
+        }
+    };
+    let what = format!(
+        "too stiff for a trial: its steps are about {step_s} s, so that a run of {end_s} s takes about {:.0e} of them; {why}{advice}",
+        end_s / mean_s
+    );
+    Some(if own { Went::Hopeless(what) } else { Went::Badly(what) })
 }
 
 /// The next number of one digit and zeros.
 fn one_digit(value: f64) -> f64 {
-    let decade = 10.0_f64.powf(value.log10().floor());
-    (value / decade).ceil() * decade
+    let exponent = value.log10().floor();
+    let digit = (value / 10.0_f64.powf(exponent)).ceil();
+    // A product with a power of ten has more digits than the number that is meant.
+    format!("{digit}e{exponent}").parse().unwrap_or(value)
 }
 
 /// A number of two digits.
 fn about(value: f64) -> String {
     let digits = format!("{value:.1e}");
     match digits.parse::<f64>() {
-        Ok(rounded) if rounded >= 1e-3 => rounded.to_string(),
+        Ok(rounded) if rounded >= 1e-3 || rounded == 0.0 => rounded.to_string(),
         _ => digits,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goals_are_written_with_one_digit() {
+        for (value, goal) in [(0.0087, "9e-3"), (0.031, "4e-2"), (1.01, "2e0"), (97.0, "1e2"), (3.2e-7, "4e-7")] {
+            assert_eq!(format!("{:e}", one_digit(value)), goal);
+        }
     }
 }

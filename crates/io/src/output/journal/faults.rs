@@ -1,16 +1,19 @@
 //! A disk whose operations fail, each in its turn, while a run is journaled and its folder is written.
 
+use std::cell::Cell;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use forwardstep_check::Report;
+use forwardstep_sim::RowSink;
 
 use super::super::disk::SystemDisk;
-use super::super::{Disk, DiskFile, Options, RunFolder, SavedRun, write_run};
-use super::JOURNAL;
+use super::super::{Disk, DiskFile, Options, Remark, RunFolder, SavedRun, write_run};
 use super::tests::{carts, journaled, nothing, record, same_rows, whole};
+use super::{JOURNAL, Journal};
 use crate::scenario::Scenario;
 use crate::scenario::kinds::Kinds;
 
@@ -83,7 +86,15 @@ impl Disk for Faulty {
         self.next()?;
         let file = fs::File::create_new(path)?;
         let is_journal = path.to_string_lossy().contains(JOURNAL);
-        Ok(Box::new(FaultyFile { file, faults: self.0.clone(), synced: 0, length: 0, spoilt: false, is_journal }))
+        Ok(Box::new(FaultyFile {
+            file,
+            faults: self.0.clone(),
+            synced: 0,
+            length: 0,
+            spoilt: false,
+            lost: false,
+            is_journal,
+        }))
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
@@ -107,13 +118,16 @@ struct FaultyFile {
     faults: Arc<Mutex<Faults>>,
     synced: u64,
     length: u64,
+    /// A write failed, and what is behind the last whole frame was not cut off.
     spoilt: bool,
+    /// A sync failed.
+    lost: bool,
     is_journal: bool,
 }
 
 impl Write for FaultyFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        assert!(!(self.spoilt && self.is_journal), "nothing is written behind what failed");
+        assert!(!((self.spoilt || self.lost) && self.is_journal), "nothing is written behind what failed");
         let mut faults = self.faults.lock().unwrap();
         let (turn, fault) = (faults.turn(), faults.fault);
         let part = if turn { &bytes[..bytes.len() / 2] } else { bytes };
@@ -134,16 +148,25 @@ impl Write for FaultyFile {
 
 impl DiskFile for FaultyFile {
     fn sync(&mut self) -> io::Result<()> {
-        assert!(!(self.spoilt && self.is_journal), "a sync that failed is not tried again");
+        assert!(!(self.spoilt && self.is_journal), "what is torn is cut off first");
+        assert!(!(self.lost && self.is_journal), "a sync that failed is not tried again");
         let result = self.faults.lock().unwrap().next();
         match result {
             Ok(()) => self.synced = self.length,
             Err(_) => {
-                self.spoilt = true;
+                self.lost = true;
                 self.file.set_len(self.synced)?;
             }
         }
         result
+    }
+
+    fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.faults.lock().unwrap().next()?;
+        assert!(bytes <= self.length, "nothing is made longer");
+        self.file.set_len(bytes)?;
+        (self.length, self.synced, self.spoilt) = (bytes, self.synced.min(bytes), false);
+        Ok(())
     }
 }
 
@@ -200,4 +223,107 @@ fn whatever_fails_the_rows_that_were_kept_are_found() {
             assert!(left > 60, "{left} operations");
         }
     }
+}
+
+/// A disk with so much room.
+#[derive(Debug)]
+struct Small(Arc<Mutex<u64>>);
+
+struct SmallFile {
+    file: fs::File,
+    room: Arc<Mutex<u64>>,
+    length: u64,
+}
+
+impl Disk for Small {
+    fn create_folders(&self, path: &Path) -> io::Result<()> {
+        SystemDisk.create_folders(path)
+    }
+
+    fn create_file(&self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
+        Ok(Box::new(SmallFile { file: fs::File::create_new(path)?, room: self.0.clone(), length: 0 }))
+    }
+
+    fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        SystemDisk.rename(from, to)
+    }
+
+    fn remove_file(&self, path: &Path) -> io::Result<()> {
+        let length = path.metadata()?.len();
+        SystemDisk.remove_file(path)?;
+        *self.0.lock().unwrap() += length;
+        Ok(())
+    }
+
+    fn sync_folder(&self, _: &Path) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Write for SmallFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut room = self.room.lock().unwrap();
+        let taken = bytes.len().min(*room as usize);
+        if taken == 0 {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.file.write_all(&bytes[..taken])?;
+        (*room, self.length) = (*room - taken as u64, self.length + taken as u64);
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl DiskFile for SmallFile {
+    fn sync(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.file.set_len(bytes)?;
+        *self.room.lock().unwrap() += self.length - bytes;
+        self.length = bytes;
+        Ok(())
+    }
+}
+
+#[test]
+fn regress_a_disk_that_is_full_at_the_first_write_keeps_the_rows_it_took() {
+    let (carts, folder) = (carts(), tempfile::tempdir().unwrap());
+    let (room, now, start) = (Arc::new(Mutex::new(400_000)), Cell::new(0.0), nothing(&carts));
+    let path = folder.path().join("run");
+    let run = RunFolder::create_on(Arc::new(Small(room.clone())), &path, false).unwrap();
+    let values = vec![0.25; start.recording.columns.len()];
+    let row_bytes = 8 * (values.len() as u64 + 1);
+    {
+        let mut journal = Journal::new(&run, record(&carts, &start), || Duration::from_secs_f64(now.get()));
+        for k in 0..2_000_000 / row_bytes as u32 {
+            journal.row(f64::from(k), &values);
+        }
+        now.set(2.0);
+        assert!(journal.step().is_break());
+        assert!(
+            journal.failure().is_some_and(|error| error.help().is_some_and(|help| help.contains("free some space")))
+        );
+    }
+    // What was torn is cut off and its space is there for the tables.
+    let kept = path.join(JOURNAL).metadata().unwrap().len();
+    let left = *room.lock().unwrap();
+    assert!(kept + left == 400_000 && (1..70_000).contains(&left), "{kept} + {left}");
+    drop(run);
+    let saved = SavedRun::open(&path).unwrap();
+    let rows = saved.record(&carts.1, None, &[]).outcome.recording.t_s.len() as u64;
+    assert!(rows * row_bytes > 300_000, "{rows} rows");
+    assert!(!saved.remarks(&carts.1, "0.1.0").iter().any(|remark| matches!(remark, Remark::JournalDamaged { .. })));
+    // Where the head alone has no room, there is nothing to keep.
+    let run = RunFolder::create_on(Arc::new(Small(Arc::new(Mutex::new(1000)))), folder.path().join("tiny"), false);
+    let run = run.unwrap();
+    let mut journal = Journal::new(&run, record(&carts, &start), || Duration::from_secs_f64(now.get()));
+    journal.row(0.0, &values);
+    now.set(4.0);
+    assert!(journal.step().is_break());
+    assert_eq!(fs::read_dir(run.path()).unwrap().count(), 0);
 }

@@ -21,7 +21,7 @@
 //! a run that ended in order; behind it stands nothing.
 //!
 //! A reader takes frames as long as they hold and leaves out the rest. A writer appends to a file that it made itself, and after a
-//! write or a sync that failed never again: nothing stands behind a torn frame.
+//! write or a sync that failed never again: nothing stands behind a torn frame. It cuts that off, if it can, since the tables need the space.
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
@@ -50,8 +50,11 @@ const ROWS: u32 = 2;
 const END: u32 = 3;
 /// Kind, length and checksum.
 const FRAME_HEAD: usize = 28;
-/// A frame of rows holds no more, unless it is one row, so that a reader need not hold more at once.
-const FRAME_BYTES: usize = 1 << 24;
+/// A frame of rows holds no more, unless it is one row, so that a reader need not hold more at once, and where a disk is full most of the
+/// rows are in frames that are whole.
+const FRAME_BYTES: usize = 1 << 16;
+/// Earlier versions wrote longer ones.
+const MOST_FRAME_BYTES: usize = 1 << 24;
 /// More text than this no head and no end has: what a scenario names is bounded, and a length that is not true must not take all memory.
 const MOST_TEXT_BYTES: u64 = 1 << 30;
 
@@ -70,6 +73,14 @@ pub(crate) struct Head {
     pub(crate) summary: Summary,
 }
 
+/// Frames one behind the other.
+#[derive(Default)]
+struct Frames {
+    bytes: Vec<u8>,
+    /// Where each ends.
+    ends: Vec<usize>,
+}
+
 /// What the checksum of the next frame begins with.
 struct Chain([u8; 32]);
 
@@ -78,13 +89,15 @@ impl Chain {
         Chain(blake3::hash(opening).into())
     }
 
-    /// Adds a frame to `bytes`.
-    fn frame(&mut self, bytes: &mut Vec<u8>, kind: u32, content: &[u8]) {
+    /// Adds a frame.
+    fn frame(&mut self, frames: &mut Frames, kind: u32, content: &[u8]) {
         let checksum = self.next(kind, content);
+        let bytes = &mut frames.bytes;
         bytes.extend(kind.to_le_bytes());
         bytes.extend((content.len() as u64).to_le_bytes());
         bytes.extend(checksum);
         bytes.extend(content);
+        frames.ends.push(bytes.len());
     }
 
     /// The checksum of the next frame, whose content is `content`.

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::super::summary::Summary;
 use super::super::table::NamedColumns;
-use super::{Chain, END, FORMAT, FRAME_BYTES, FRAME_HEAD, HEAD, Head, MAGIC, MOST_TEXT_BYTES, ROWS};
+use super::{Chain, END, FORMAT, FRAME_HEAD, HEAD, Head, MAGIC, MOST_FRAME_BYTES, MOST_TEXT_BYTES, ROWS};
 
 /// Why no rows can be read from a journal.
 #[derive(Debug, Error)]
@@ -104,7 +104,7 @@ impl<R: Read> Frames<R> {
         self.input.read_exact(&mut head).ok()?;
         let kind = u32::from_le_bytes(head[..4].try_into().ok()?);
         let length = u64::from_le_bytes(head[4..12].try_into().ok()?);
-        let most = if kind == ROWS { row_bytes.max(FRAME_BYTES as u64) } else { MOST_TEXT_BYTES };
+        let most = if kind == ROWS { row_bytes.max(MOST_FRAME_BYTES as u64) } else { MOST_TEXT_BYTES };
         let left = self.left.checked_sub(FRAME_HEAD as u64)?.checked_sub(length)?;
         if length > most {
             return None;

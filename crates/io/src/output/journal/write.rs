@@ -1,6 +1,6 @@
 //! Writing a journal while a run goes on.
 
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use super::super::metrics::Metrics;
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::summary::Summary;
-use super::{Chain, END, FRAME_BYTES, HEAD, Head, JOURNAL, MOST_TEXT_BYTES, ROWS, opening};
+use super::{Chain, END, FRAME_BYTES, Frames, HEAD, Head, JOURNAL, MOST_TEXT_BYTES, ROWS, opening};
 
 /// As often it is written at most.
 const EVERY: Duration = Duration::from_secs(1);
@@ -34,6 +34,8 @@ pub struct Journal<'f> {
     written: Duration,
     /// Once there is one.
     file: Option<Box<dyn DiskFile>>,
+    /// How much of it is on the disk.
+    length: u64,
     chain: Chain,
     /// Rows that are not written yet.
     rows: Vec<u8>,
@@ -51,6 +53,7 @@ impl<'f> Journal<'f> {
             written: clock(),
             clock: Box::new(clock),
             file: None,
+            length: 0,
             chain: Chain::start(&opening()),
             rows: Vec::new(),
             row_bytes: 8 * (start.outcome.recording.columns.len() + 1),
@@ -80,59 +83,88 @@ impl<'f> Journal<'f> {
     fn write_end(&mut self, record: &RunRecord<'_>, metrics: Metrics) -> Result<(), OutputError> {
         let text = serde_json::to_vec(&Summary::of(record, metrics, Vec::new()));
         let text = text.map_err(|error| self.unencodable(error.into()))?;
-        let mut bytes = Vec::new();
-        self.frame_rows(&mut bytes);
-        self.frame_text(&mut bytes, END, &text)?;
-        self.append(&bytes)
+        let mut frames = Frames::default();
+        self.frame_rows(&mut frames);
+        self.frame_text(&mut frames, END, &text)?;
+        self.append(&frames)
     }
 
     /// Writes the rows that wait; the first time into a file that gets its name when all of that is on the disk.
     fn write(&mut self) -> Result<(), OutputError> {
-        let mut bytes = Vec::new();
+        let mut frames = Frames::default();
         if self.file.is_some() {
-            self.frame_rows(&mut bytes);
-            return self.append(&bytes);
+            self.frame_rows(&mut frames);
+            return self.append(&frames);
         }
+        self.folder.ready()?;
         let head = serde_json::to_vec(&self.head()).map_err(|error| self.unencodable(error.into()))?;
-        bytes.extend(opening());
-        self.frame_text(&mut bytes, HEAD, &head)?;
-        self.frame_rows(&mut bytes);
+        frames.bytes.extend(opening());
+        self.frame_text(&mut frames, HEAD, &head)?;
+        let head_bytes = frames.bytes.len() as u64;
+        self.frame_rows(&mut frames);
         let disk = self.folder.disk();
         let (path, partial) = (self.folder.path().join(JOURNAL), self.folder.partial(JOURNAL));
         let _ = disk.remove_file(&partial); // of a writer that was killed
         self.file = Some(disk.create_file(&partial).map_err(io_error(Action::CreateFile, &path))?);
-        let named = self.append(&bytes).and_then(|()| {
-            disk.rename(&partial, &path).map_err(io_error(Action::RenameFile, &path))?;
-            disk.sync_folder(self.folder.path()).map_err(io_error(Action::WriteFile, &path))
-        });
-        if named.is_err() {
+        let appended = self.append(&frames);
+        let mut named = false;
+        // Where the disk is full, the rows that it took are kept.
+        let kept = if self.length <= head_bytes {
+            Ok(())
+        } else {
+            let renamed = disk.rename(&partial, &path).map_err(io_error(Action::RenameFile, &path));
+            named = renamed.is_ok();
+            renamed.and_then(|()| disk.sync_folder(self.folder.path()).map_err(io_error(Action::WriteFile, &path)))
+        };
+        if !named {
             let _ = disk.remove_file(&partial);
         }
-        named
+        appended.and(kept)
     }
 
-    /// Writes to the end of the file, to the disk.
-    fn append(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
+    /// Writes to the end of the file, to the disk. Of what could not be written to the end the frames that are whole stay; the rest takes
+    /// space that the tables may need.
+    fn append(&mut self, frames: &Frames) -> Result<(), OutputError> {
         let Some(file) = &mut self.file else { return Ok(()) };
-        let written = file.write_all(bytes).and_then(|()| file.sync());
-        written.map_err(io_error(Action::WriteFile, &self.folder.path().join(JOURNAL)))
+        let (bytes, written) = write_until_refused(file, &frames.bytes);
+        let appended = match written {
+            Ok(()) => match file.sync() {
+                Ok(()) => {
+                    self.length += bytes as u64;
+                    Ok(())
+                }
+                // What was not synced before is lost, whatever a second attempt says.
+                Err(error) => {
+                    let _ = file.cut(self.length);
+                    Err(error)
+                }
+            },
+            Err(error) => {
+                let whole = frames.ends.iter().rev().find(|end| **end <= bytes).map_or(0, |end| *end as u64);
+                if file.cut(self.length + whole).and_then(|()| file.sync()).is_ok() {
+                    self.length += whole;
+                }
+                Err(error)
+            }
+        };
+        appended.map_err(io_error(Action::WriteFile, &self.folder.path().join(JOURNAL)))
     }
 
     /// Puts the rows that wait into frames.
-    fn frame_rows(&mut self, bytes: &mut Vec<u8>) {
+    fn frame_rows(&mut self, frames: &mut Frames) {
         let most = (FRAME_BYTES / self.row_bytes).max(1) * self.row_bytes;
         for rows in self.rows.chunks(most) {
-            self.chain.frame(bytes, ROWS, rows);
+            self.chain.frame(frames, ROWS, rows);
         }
         self.rows.clear();
     }
 
-    fn frame_text(&mut self, bytes: &mut Vec<u8>, kind: u32, text: &[u8]) -> Result<(), OutputError> {
+    fn frame_text(&mut self, frames: &mut Frames, kind: u32, text: &[u8]) -> Result<(), OutputError> {
         if text.len() as u64 > MOST_TEXT_BYTES {
             let path = self.folder.path().join(JOURNAL);
             return Err(io_error(Action::WriteFile, &path)(ErrorKind::FileTooLarge.into()));
         }
-        self.chain.frame(bytes, kind, text);
+        self.chain.frame(frames, kind, text);
         Ok(())
     }
 
@@ -154,6 +186,20 @@ impl<'f> Journal<'f> {
     fn unencodable(&self, reason: EncodeError) -> OutputError {
         OutputError::Encode { path: self.folder.path().join(JOURNAL), reason }
     }
+}
+
+/// Writes as much as is taken: how much that is, and why no more.
+fn write_until_refused(file: &mut Box<dyn DiskFile>, bytes: &[u8]) -> (usize, io::Result<()>) {
+    let mut at = 0;
+    while at < bytes.len() {
+        match file.write(&bytes[at..]) {
+            Ok(0) => return (at, Err(ErrorKind::WriteZero.into())),
+            Ok(more) => at += more,
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return (at, Err(error)),
+        }
+    }
+    (at, Ok(()))
 }
 
 impl RowSink for Journal<'_> {

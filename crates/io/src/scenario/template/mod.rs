@@ -5,6 +5,8 @@ mod robot;
 
 use forwardstep_sim::Exchange;
 
+use crate::one_line;
+
 pub use self::network::{TemplateDelay, TemplateGraph};
 pub use self::robot::{LawTemplate, RobotTemplate, TaskTemplate, Tuning};
 
@@ -46,6 +48,8 @@ pub struct Template {
     pub delay: TemplateDelay,
     /// What the goal asks for; `None` for a comment in its place.
     pub goal: Option<f64>,
+    /// What its reader should know first, in comments at its head.
+    pub remarks: Vec<String>,
 }
 
 impl Template {
@@ -67,12 +71,13 @@ impl Template {
             graph: TemplateGraph::Ring,
             delay: TemplateDelay::Constant,
             goal: None,
+            remarks: Vec::new(),
         }
     }
 
     /// The text of the scenario.
     pub fn text(&self) -> String {
-        let mut parts = vec![HEAD.to_owned(), self.title_and_time()];
+        let mut parts = vec![self.head(), self.title_and_time()];
         let law = self.robot.law(self.tuning);
         match self.robot.task {
             TaskTemplate::Track { agent, reference } => {
@@ -86,6 +91,25 @@ impl Template {
         }
         parts.push(self.goal());
         parts.join("\n")
+    }
+
+    fn head(&self) -> String {
+        let mut head = HEAD.to_owned();
+        for remark in &self.remarks {
+            head += "#\n";
+            // What is repeated of a robot must not end the comment.
+            let remark = one_line(remark);
+            let mut line = "#".to_owned();
+            for word in remark.split(' ') {
+                if line.len() + word.len() > WIDEST_REMARK && line.len() > 1 {
+                    head += &(line + "\n");
+                    line = "#".to_owned();
+                }
+                line = line + " " + word;
+            }
+            head += &(line + "\n");
+        }
+        head
     }
 
     fn title_and_time(&self) -> String {
@@ -142,6 +166,9 @@ impl Template {
         }
     }
 }
+
+/// Lines of remarks are about as long, in bytes.
+const WIDEST_REMARK: usize = 100;
 
 const HEAD: &str = "\
 # A scenario to start from. With its path in place of FILE,
