@@ -69,8 +69,11 @@ fn step_work(ideal: &Setup) -> f64 {
     let links = ideal.network.schedule.graphs.iter().map(Vec::len).max().unwrap_or(0) * axes;
     let pieces = |index: usize| {
         let delay = &ideal.network.delays[index];
-        let piece = delay.first_piece();
-        let pieces = delay.max_s() / (piece.end_s - piece.start_s);
+        // The first may be cut by the start.
+        let first = delay.first_piece();
+        let next = if first.end_s.is_finite() { delay.next_piece(first) } else { first };
+        let longest_s = (first.end_s - first.start_s).max(next.end_s - next.start_s);
+        let pieces = (delay.max_s() / longest_s).min(1e4);
         if delay.is_constant() || !pieces.is_finite() { 0.0 } else { pieces }
     };
     let searched = ideal.network.used_delays().map(pieces).fold(0.0, f64::max);

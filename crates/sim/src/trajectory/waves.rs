@@ -55,7 +55,7 @@ fn waves(formula: &Expression) -> Option<[Swing; 2]> {
 /// The middle of what is known to be a number, but for rounding.
 fn exact(within: Interval, size: f64) -> Option<f64> {
     let known = within.is_finite() && within.high - within.low <= EXACT * size;
-    known.then(|| within.low + 0.5 * (within.high - within.low))
+    known.then_some(within.low + 0.5 * (within.high - within.low))
 }
 
 /// A constant, a multiple of t, and waves by amplitude, rate and phase.
