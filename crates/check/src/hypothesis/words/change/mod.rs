@@ -135,7 +135,10 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
         ),
         LinkEvidence::RefutedWeight { fault, .. } => match fault {
             WeightFault::Fades => "a floor of the formula w, such as max(w, c) with a constant c > 0".into(),
-            WeightFault::Negative | WeightFault::Grows => {
+            WeightFault::Grows => {
+                "an end of the formula w, such as min(w, c) with a constant c, and a bounded slope".into()
+            }
+            WeightFault::Negative => {
                 "ends of the formula w, such as min(max(w, c), d) with constants 0 < c < d, and a bounded slope".into()
             }
         },
