@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::tree::Tree;
-use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{AgentSetup, TaskSpaceLaw, TipSetup};
 
+use crate::hypothesis::numbers::seconds;
 use crate::hypothesis::{MotionExtent, ReachSide, RobotEvidence};
 
 /// Times at which a target is looked at.
@@ -23,35 +24,70 @@ pub(crate) struct Reach {
     pub(crate) exact: bool,
 }
 
-/// Whether the target is within reach, as far as that is known; nothing for a tip that slides.
+/// Whether the target is within reach for all time: the run tells as much of a motion that is given as a formula as any other stretch.
+/// Nothing for a tip that slides.
 pub(crate) fn within_reach(agent: &AgentSetup, law: &TaskSpaceLaw, end_s: f64) -> Option<RobotEvidence> {
     let (target, reach) = (agent.target.as_ref()?, reach(agent, law)?);
-    let for_ever = extent(target, &reach, None);
-    if reach.holds(for_ever) {
-        return Some(reach.within(for_ever, true));
+    let by_box = extent(target, &reach);
+    if reach.holds(by_box) {
+        return Some(reach.within(by_box));
     }
-    let seen = looks(target, &reach, end_s);
-    if let Some((side, t_s, distance_m)) = seen.out {
-        let limit_m = reach.limit(side);
-        return Some(RobotEvidence::OutOfReach { side, t_s, distance_m, limit_m });
+    let until_s = target.paths().iter().filter_map(last_s).fold(end_s, f64::max);
+    let seen = looks(target, &reach, until_s);
+    if let Some(out) = seen.out {
+        return Some(reach.out_of(out));
     }
-    // Between two looks it gets no farther than its speed takes it.
-    let on_run = extent(target, &reach, Some(end_s));
-    let speed = (0..reach.from.len()).map(|axis| target.hull(axis, 1, Some(end_s)).size());
-    let room =
-        0.5 * end_s / f64::from(LOOKS) * speed.map(|speed| speed * speed).sum::<f64>().sqrt() + ROUNDING * reach.most;
-    let room = if room.is_finite() { room } else { f64::INFINITY };
-    let most = (seen.farthest + room).min(on_run.most);
-    let least = (seen.nearest - room).max(on_run.least);
-    let shown = MotionExtent { least, most };
-    Some(if reach.holds(shown) {
-        reach.within(shown, false)
-    } else {
-        RobotEvidence::ReachNotShown {
+    let shown = match target.squared_distance(&reach.from) {
+        Some(square) => Some(roots(square.for_ever().within)),
+        None => by_speed(target, &reach, &seen, until_s),
+    };
+    if let Some(shown) = shown.filter(|shown| reach.holds(*shown)) {
+        return Some(reach.within(shown));
+    }
+    Some(match out_later(target, &reach, until_s) {
+        Some(out) => reach.out_of(out),
+        None => RobotEvidence::ReachNotShown {
             seen: MotionExtent { least: seen.nearest, most: seen.farthest },
             reach: MotionExtent { least: reach.least, most: reach.most },
-        }
+        },
     })
+}
+
+/// When a target is first seen out of reach, also after the end of the run, s.
+pub(crate) fn leaves_s(target: &Trajectory, reach: &Reach, end_s: f64) -> Option<f64> {
+    let until_s = target.paths().iter().filter_map(last_s).fold(end_s, f64::max);
+    looks(target, reach, until_s).out.or_else(|| out_later(target, reach, until_s)).map(|out| out.t_s)
+}
+
+/// Where a curve through points ends, and stays.
+fn last_s(path: &Path) -> Option<f64> {
+    match path {
+        Path::Spline(spline) => Some(spline.ends_s()[1]),
+        Path::Formula(_) | Path::Sinusoids { .. } => None,
+    }
+}
+
+/// Curves through points, and what does not move, are at rest from the last look on: for them it speaks of all time. Between two looks a
+/// target gets no farther than its speed takes it.
+fn by_speed(target: &Trajectory, reach: &Reach, seen: &Seen, until_s: f64) -> Option<MotionExtent> {
+    let speed = |axis: usize, end_s| target.hull(axis, 1, end_s).size();
+    let axes = 0..reach.from.len();
+    let stays = |axis: usize| last_s(&target.paths()[axis]).is_some() || speed(axis, None) == 0.0;
+    if !axes.clone().all(stays) {
+        return None;
+    }
+    let squares = axes.map(|axis| speed(axis, Some(until_s))).map(|speed| speed * speed);
+    let room = 0.5 * until_s / f64::from(LOOKS) * squares.sum::<f64>().sqrt() + ROUNDING * reach.most;
+    let room = if room.is_finite() { room } else { f64::INFINITY };
+    Some(MotionExtent { least: seen.nearest - room, most: seen.farthest + room })
+}
+
+/// What a distance keeps within whose square keeps within this.
+fn roots(square: Interval) -> MotionExtent {
+    let [least, most] = [square.low.max(0.0).sqrt().next_down(), square.high.sqrt().next_up()];
+    // Not-a-number is no bound.
+    let most = if most.is_nan() { f64::INFINITY } else { most };
+    MotionExtent { least: if least.is_nan() { 0.0 } else { least }, most }
 }
 
 impl Reach {
@@ -84,9 +120,13 @@ impl Reach {
         }
     }
 
-    fn within(&self, target: MotionExtent, for_ever: bool) -> RobotEvidence {
+    fn within(&self, target: MotionExtent) -> RobotEvidence {
         let reach = MotionExtent { least: self.least, most: self.most };
-        RobotEvidence::WithinReach { target, reach, exact: self.exact, for_ever }
+        RobotEvidence::WithinReach { target, reach, exact: self.exact }
+    }
+
+    fn out_of(&self, Out { side, t_s, distance_m }: Out) -> RobotEvidence {
+        RobotEvidence::OutOfReach { side, t_s, distance_m, limit_m: self.limit(side) }
     }
 }
 
@@ -106,40 +146,55 @@ pub(crate) fn reach(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Reach> {
     }
 }
 
-/// How far a target is from where a tip's reach is counted, by bounds of its coordinates.
-fn extent(target: &Trajectory, reach: &Reach, end_s: Option<f64>) -> MotionExtent {
-    let each = reach.from.iter().enumerate().map(|(axis, from)| target.hull(axis, 0, end_s) - Interval::point(*from));
+/// How far a target is from where a tip's reach is counted for all time, by bounds of its coordinates.
+fn extent(target: &Trajectory, reach: &Reach) -> MotionExtent {
+    let each = reach.from.iter().enumerate().map(|(axis, from)| target.hull(axis, 0, None) - Interval::point(*from));
     let (mut least, mut most) = (Interval::point(0.0), Interval::point(0.0));
     for distance in each {
         let nearest = Interval::point(distance.low.max(-distance.high).max(0.0));
         let farthest = Interval::point(distance.size());
         (least, most) = (least + nearest * nearest, most + farthest * farthest);
     }
-    let [least, most] = [least.low.max(0.0).sqrt().next_down(), most.high.sqrt().next_up()];
-    // Not-a-number is no bound.
-    let most = if most.is_nan() { f64::INFINITY } else { most };
-    MotionExtent { least: if least.is_nan() { 0.0 } else { least }, most }
+    roots(Interval { low: least.low, high: most.high })
 }
 
 /// Where a target was seen, by its distance.
 struct Seen {
     nearest: f64,
     farthest: f64,
-    /// Where it was first seen out of reach: on which side, when, how far.
-    out: Option<(ReachSide, f64, f64)>,
+    /// Where it was first seen out of reach.
+    out: Option<Out>,
+}
+
+/// A target out of reach.
+struct Out {
+    side: ReachSide,
+    t_s: f64,
+    distance_m: f64,
 }
 
 fn looks(target: &Trajectory, reach: &Reach, end_s: f64) -> Seen {
     let mut seen = Seen { nearest: f64::INFINITY, farthest: 0.0, out: None };
     let mut jets = vec![[0.0; 5]; target.axes()];
     for look in 0..=LOOKS {
-        let t_s = end_s * f64::from(look) / f64::from(LOOKS);
+        // With six decimals it can be told as it is.
+        let t_s = seconds(end_s * f64::from(look) / f64::from(LOOKS));
         target.jets(t_s, &mut jets);
         let squares = jets.iter().zip(&reach.from).map(|(jet, from)| (jet[0] - from) * (jet[0] - from));
-        let distance = squares.sum::<f64>().sqrt();
-        seen.farthest = seen.farthest.max(distance);
-        seen.nearest = seen.nearest.min(distance);
-        seen.out = seen.out.or_else(|| reach.out(distance).map(|side| (side, t_s, distance)));
+        let distance_m = squares.sum::<f64>().sqrt();
+        seen.farthest = seen.farthest.max(distance_m);
+        seen.nearest = seen.nearest.min(distance_m);
+        seen.out = seen.out.or_else(|| reach.out(distance_m).map(|side| Out { side, t_s, distance_m }));
     }
     seen
+}
+
+/// Where a target that is a formula is certainly out of reach after the end of the run.
+fn out_later(target: &Trajectory, reach: &Reach, end_s: f64) -> Option<Out> {
+    let room = ROUNDING * reach.most;
+    let low = if reach.has_inner_edge() { (reach.least - room).max(0.0) } else { f64::NEG_INFINITY };
+    let range = Interval { low: low * low.abs(), high: (reach.most + room) * (reach.most + room) };
+    let found = target.leaves_later(&reach.from, range, end_s)?;
+    let side = if found.value > range.high { ReachSide::Beyond } else { ReachSide::Inside };
+    Some(Out { side, t_s: found.t_s, distance_m: found.value.max(0.0).sqrt() })
 }

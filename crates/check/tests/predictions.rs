@@ -19,6 +19,8 @@ mod rate;
 mod rubbing;
 #[path = "predictions/smoothness.rs"]
 mod smoothness;
+#[path = "predictions/start.rs"]
+mod start;
 #[path = "predictions/vehicles.rs"]
 mod vehicles;
 

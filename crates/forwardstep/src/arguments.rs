@@ -163,9 +163,12 @@ pub(crate) struct CheckOptions {
     /// Print one JSON object; `forwardstep schema check` describes it
     #[arg(long)]
     pub(crate) json: bool,
-    /// Also predict the course of agreement, its rate and peak torques, which simulates the reference dynamics
+    /// Also predict the course of agreement, its rate and peak torques, which simulates the reference dynamics for a few seconds at most
     #[arg(long)]
     pub(crate) predict: bool,
+    /// With `--predict`: go on where that takes longer than a few seconds, as for large networks, stiff designs and many packets
+    #[arg(long, requires = "predict")]
+    pub(crate) thorough: bool,
     /// Write the answers with their proofs to this file, for `checker/forwardstep_checker.py`; an older one is replaced
     #[arg(long, value_name = "FILE.json")]
     pub(crate) certificate: Option<PathBuf>,

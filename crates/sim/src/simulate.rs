@@ -52,6 +52,18 @@ pub fn simulate_samples(
     simulate_with(setup, observer, samples, Observers::default())
 }
 
+/// The same where agents told something else before t = 0 than they tell then: the messages of all agents, position and velocity each.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_told(
+    setup: &Setup,
+    before: &[Vec<f64>],
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Outcome, SetupError> {
+    simulate_with(setup, observer, &mut |_| {}, Observers { before: Some(before), ..Observers::default() })
+}
+
 /// The same, and hands every agent with its rates at every row to `each`, before the row is recorded; nothing when control is digital, where
 /// reference dynamics have no rates. The run has the same bits.
 ///
@@ -90,6 +102,8 @@ pub(crate) struct Observers<'a> {
     pub(crate) moment: Option<&'a mut dyn FnMut(Moment<'_>)>,
     /// At every row that is recorded.
     pub(crate) rows: Option<&'a mut dyn RowSink>,
+    /// What agents told before t = 0, which nobody looks at: the one thing that changes a run.
+    pub(crate) before: Option<&'a [Vec<f64>]>,
 }
 
 /// The same, and lets `observers` look at every step.
@@ -100,7 +114,7 @@ pub(crate) fn simulate_with(
     observers: Observers<'_>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
-    let Observers { mut watch, jump, moment, rows } = observers;
+    let Observers { mut watch, jump, moment, rows, before } = observers;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
     closed_loop.watch(samples);
@@ -114,6 +128,9 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator =
         Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries, forcing(setup));
+    if let Some(before) = before {
+        integrator.told_before(before);
+    }
     let mut recorder = Recorder::new(setup, &closed_loop, rows);
     let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
     let mut limits = LimitWatch::new(setup);

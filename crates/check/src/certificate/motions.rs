@@ -16,7 +16,7 @@ use super::slopes::{self, on_piece};
 use super::zeros::vanishing;
 use crate::kinds::start_attitude::scalar_squared;
 use crate::laws::kind_of;
-use crate::reach::reach;
+use crate::reach::{leaves_s, reach};
 use crate::{Answer, Id};
 
 /// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
@@ -210,7 +210,12 @@ fn squares(courses: &[Course<'_>], end_s: f64, reach: Reach, good: impl Fn(Inter
     if let Some(formulas) = formulas {
         return enclosed(&sum(formulas.into_iter().map(|entry| entry.power(2.0))), end_s, reach, good);
     }
-    let last = courses.iter().find(|course| course.formula().is_none())?;
+    // Of several curves the last to end tells when all stay.
+    let ends_s = |course: &&Course<'_>| match course {
+        Course::Formula(_) => f64::NEG_INFINITY,
+        Course::Curve(spline, _) => spline.ends_s()[1],
+    };
+    let last = courses.iter().max_by(|one, other| ends_s(one).total_cmp(&ends_s(other)))?;
     found(&last.stretches(), |t| square(courses, t), end_s, reach, good)
 }
 
@@ -241,12 +246,9 @@ pub(super) fn within_reach(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             squares(&entries, setup.time.end_s, claim.reach(), inside).map(Proof::Distance)
         }
         Answer::Violated => {
-            let times = (0..=LOOKS).map(|look| setup.time.end_s * f64::from(look) / f64::from(LOOKS));
-            let out = |t_s: &f64| {
-                let found = square(&entries, Interval::point(*t_s));
-                found.low > most * (1.0 + 1e-9) || found.high < least * (1.0 - 1e-9)
-            };
-            times.into_iter().find(out).map(|t_s| Proof::OutOfReach(Number::written(t_s)))
+            let t_s = leaves_s(agent.target.as_ref()?, &known, setup.time.end_s)?;
+            let found = square(&entries, Interval::point(t_s));
+            (found.low > most || found.high < least).then(|| Proof::OutOfReach(Number::written(t_s)))
         }
         Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }

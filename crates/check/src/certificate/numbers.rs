@@ -11,7 +11,7 @@ use crate::Answer;
 use crate::kinds::chain::{undefined_state, unmoved};
 use crate::kinds::matrix_factor::null_vector;
 use crate::surroundings::{acts, ends_s};
-use crate::theorems::slowest_per_s;
+use crate::theorems::certainly_slowest_per_s;
 
 /// A number that proves what holds.
 fn number(claim: &Claim<'_>, value: Option<BigRational>) -> Option<Proof> {
@@ -27,7 +27,7 @@ pub(super) fn real_roots(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 pub(super) fn hurwitz(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let tracking = setup.agents.iter().enumerate().filter(|(agent, _)| setup.tracks(*agent));
     let own = tracking.filter_map(|(_, agent)| agent.roots_per_s.slowest_per_s());
-    let led = setup.following().map(slowest_per_s);
+    let led = setup.following().map(certainly_slowest_per_s);
     number(claim, own.chain(led).reduce(f64::min).map(Number::written))
 }
 

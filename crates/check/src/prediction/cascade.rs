@@ -63,6 +63,9 @@ pub enum NoCascade {
     /// Agents have different numbers of axes.
     #[error("the agents do not have the same axes")]
     Axes,
+    /// Velocities that do not follow a reference are heard to the end.
+    #[error("velocities from before the start are still on their way at the end of the horizon")]
+    StillOnItsWay,
     /// A column or a row is missing.
     #[error("not all derivatives of the reference were recorded")]
     NotRecorded,

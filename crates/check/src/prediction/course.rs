@@ -2,11 +2,15 @@
 
 use std::ops::ControlFlow;
 
+use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{Progress, Recording, Setup, Signal};
 use thiserror::Error;
 
+use crate::kinds::is_lagrangian;
+use crate::practical::{Gains, start_energy_j};
+
 use super::cascade::{CascadeSpread, NoCascade};
-use super::ideal::{NoIdeal, ideal};
+use super::ideal::{NoIdeal, ideal, start_error, told_before};
 use super::settled::{Settled, settled};
 use super::torque::{PeakTorque, peak_torques};
 use super::unfinished::{Unfinished, completed};
@@ -27,6 +31,30 @@ pub struct Course {
     pub settled: Settled,
     /// The largest torque of every axis of robots under (6)–(7).
     pub peak_torques: Vec<PeakTorque>,
+    /// How far a run begins from this course.
+    pub start: StartError,
+}
+
+/// How far from s ≡ 0 a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StartError {
+    /// The largest |s(0)| of an axis, where z(0) is given beside the velocity.
+    pub s: f64,
+    /// V(0) of all robots under (6)–(7) together, J; `None` where it is not known.
+    pub energy_j: Option<f64>,
+}
+
+impl StartError {
+    fn of(setup: &Setup) -> StartError {
+        let pure = setup.reference.is::<PureIntegral>();
+        let errors = setup.agents.iter().filter(|_| !pure).map(start_error);
+        let energy = |(index, agent)| start_energy_j(setup, index, &Gains::of(agent)?);
+        let robots = setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent));
+        let energies: Option<Vec<f64>> = robots.map(energy).collect();
+        let energy_j =
+            energies.filter(|all| !all.is_empty()).map(|all| all.iter().sum()).filter(|sum: &f64| sum.is_finite());
+        StartError { s: errors.fold(0.0, f64::max), energy_j }
+    }
 }
 
 /// Why the course of agreement cannot be predicted.
@@ -61,18 +89,39 @@ impl Course {
 /// # Errors
 /// [`NoCourse`] when there is none.
 pub fn course(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Course, NoCourse> {
+    course_within(setup, f64::INFINITY, observer)
+}
+
+/// Work for a course, in nanoseconds, roughly: about two seconds.
+pub const COURSE_WORK: f64 = 2e9;
+
+/// The same with so much `work`, such as [`COURSE_WORK`], which is counted, so that it ends at the same place everywhere.
+///
+/// # Errors
+/// [`NoCourse`] when there is none, or it is more work.
+pub fn course_within(
+    setup: &Setup,
+    mut work: f64,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Course, NoCourse> {
     let ideal = ideal(setup)?;
     let [first, _, ..] = ideal.agents.as_slice() else { return Err(NoCourse::FewerThanTwoAgents) };
     let axes = first.robot.axes.len();
     if ideal.agents.iter().any(|agent| agent.robot.axes.len() != axes) {
         return Err(NoCourse::Axes);
     }
-    let recording = completed(&ideal, observer)?;
+    let before = told_before(setup, &ideal);
+    let recording = completed(&ideal, before.as_deref(), &mut work, observer)?;
     let disagreement = disagreement(&recording, axes);
-    let within = CascadeSpread::of(&ideal, &recording).map(|spread| spread.last());
+    let within = match before {
+        // What was sent before t = 0 is in no row.
+        Some(_) if ideal.network.max_delay_s() >= ideal.time.end_s => Err(NoCascade::StillOnItsWay),
+        Some(_) | None => CascadeSpread::of(&ideal, &recording).map(|spread| spread.last()),
+    };
     let settled = settled(&recording.t_s, &disagreement);
     let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
-    Ok(Course { disagreement, value, within, settled, peak_torques, t_s: recording.t_s })
+    let start = StartError::of(setup);
+    Ok(Course { disagreement, value, within, settled, peak_torques, start, t_s: recording.t_s })
 }
 
 /// The positions of all agents on an axis.

@@ -18,8 +18,8 @@ use forwardstep_core::plant::Vehicle;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::reference::{Consensus, PureIntegral};
 use forwardstep_sim::{
-    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, Solver, Start,
-    ThrustLaw, VehicleModel,
+    AgentSetup, Axis, ChainLaw, ChainModel, Exchange, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup,
+    Solver, Start, ThrustLaw, VehicleModel,
 };
 use thiserror::Error;
 
@@ -66,8 +66,8 @@ pub enum NoIdeal {
 ///
 /// The network, its draws, the roots, the horizon and the solver are those of `setup`; agents keep their names and axes. What
 /// has no meaning or no effect while s ≡ 0 is left out: gains, estimates, λ of Remark 4, pushes, limits, sampling. Under
-/// (aa10), (a1), (a5) and (24) q̇(0) becomes z(0), which keeps what [`crate::predict`] finds conserved unless velocities are
-/// exchanged with a delay: those sent before t = 0 are then z(0), not q̇(0). Under (3) and (23) z(0) becomes q̇(0), which
+/// (aa10), (a1), (a5) and (24) q̇(0) becomes z(0), which keeps what [`crate::predict`] finds conserved together with
+/// [`told_before`]: velocities sent before t = 0 are q̇(0). Under (3) and (23) z(0) becomes q̇(0), which
 /// keeps it always. Vehicles in formation are replaced by what agrees, x − d.
 ///
 /// # Errors
@@ -96,6 +96,22 @@ pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
         control: None,
         ..setup.clone()
     })
+}
+
+/// What the agents of `setup` sent before t = 0, positions and velocities as they are measured, where that is not what those of [`ideal`]
+/// send at the start.
+pub fn told_before(setup: &Setup, ideal: &Setup) -> Option<Vec<Vec<f64>>> {
+    let message = |agent: &AgentSetup| -> Option<Vec<f64>> {
+        let Some(law) = agent.law.downcast() else { return Some([&agent.start.q[..], &agent.start.dq].concat()) };
+        let measured = in_formation(agent, law)?;
+        Some(measured.into_iter().take(2).flatten().map(|x| x.value).collect())
+    };
+    let before: Vec<Vec<f64>> = setup.agents.iter().map(message).collect::<Option<_>>()?;
+    let differs = |(told, agent): (&Vec<f64>, &AgentSetup)| *told != [&agent.start.q[..], &agent.start.dq].concat();
+    let designed = designed(setup);
+    let setup = designed.as_ref().unwrap_or(setup);
+    let velocities = setup.exchange == Exchange::PositionVelocity && !setup.reference.is::<PureIntegral>();
+    (velocities && before.iter().zip(&ideal.agents).any(differs)).then_some(before)
 }
 
 /// Damping of what rounding leaves of s, 1/s: with s = 0 it acts on nothing.
@@ -187,6 +203,27 @@ fn in_formation(own: &AgentSetup, law: &ThrustLaw) -> Option<Vec<Vec<Tally>>> {
         }
     }
     Some(measured)
+}
+
+/// The largest |s| of an axis of `own` at the start, where z(0) is given beside what follows it.
+pub(crate) fn start_error(own: &AgentSetup) -> f64 {
+    let axes = own.robot.axes.len();
+    let followed = match own.law.downcast() {
+        Some(law) if is_its_own_reference(own) || in_formation(own, law).is_none() => return 0.0,
+        Some(law) => {
+            in_formation(own, law).and_then(|mut measured| Some(measured.pop()?.iter().map(|x| x.value).collect()))
+        }
+        None if own.law.is::<PositionOnlyLaw>() => return 0.0,
+        None => {
+            let all = [&own.start.q[..], &own.start.dq, &own.start.rest].concat();
+            order(own).and_then(|order| all.chunks(axes.max(1)).nth(order - 1).map(<[f64]>::to_vec))
+        }
+    };
+    let z = own.start.reference.first();
+    let apart = followed.zip(z).map(|(followed, z)| {
+        followed.iter().zip(z).map(|(followed, z): (&f64, &f64)| (followed - z).abs()).fold(0.0, f64::max)
+    });
+    apart.unwrap_or(0.0)
 }
 
 /// k, where z follows the derivative of order k − 1 of the position.

@@ -27,11 +27,11 @@ mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub(crate) use course::disagreement;
-pub use course::{Course, NoCourse, course};
+pub use course::{COURSE_WORK, Course, NoCourse, StartError, course, course_within};
 pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat, guaranteed_rate};
-pub use ideal::{NoIdeal, ideal};
+pub use ideal::{NoIdeal, ideal, told_before};
 pub(crate) use ideal::{family_start, order};
-pub use period::{NoPeriodRate, PeriodRate, period_rate};
+pub use period::{NoPeriodRate, PeriodRate, period_rate, period_rate_within};
 pub(crate) use repeats::Repeats;
 pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};

@@ -89,6 +89,18 @@ pub fn period_rate(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<PeriodRate, NoPeriodRate> {
+    period_rate_within(setup, f64::INFINITY, observer)
+}
+
+/// The same with so much `work` for all attempts together, such as [`COURSE_WORK`](super::COURSE_WORK).
+///
+/// # Errors
+/// [`NoPeriodRate`] when there is none, or it is more work.
+pub fn period_rate_within(
+    setup: &Setup,
+    mut work: f64,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<PeriodRate, NoPeriodRate> {
     let mut alone = on_one_axis(ideal(setup)?);
     let Some(Repeats::Every(period_s)) = Repeats::of(setup) else { return Err(NoPeriodRate::NoPeriod) };
     let [mut periods, most] = PERIODS;
@@ -104,7 +116,7 @@ pub fn period_rate(
             record_every_s: period_s / ROWS as f64,
             record_at: forwardstep_sim::RecordAt::Intervals,
         };
-        let widths = CascadeSpread::of(&alone, &completed(&alone, observer)?)?.widths();
+        let widths = CascadeSpread::of(&alone, &completed(&alone, None, &mut work, observer)?)?.widths();
         let each: Vec<f64> = (0..=periods).filter_map(|k| widths.get(k * ROWS)).copied().collect();
         let start = each.first().copied().unwrap_or(0.0);
         // The first is the start.

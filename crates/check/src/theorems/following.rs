@@ -111,15 +111,31 @@ fn bounded_motion(setup: &Setup, following: &Following) -> Hypothesis {
     Hypothesis::new(Id::BoundedLeader, evidence)
 }
 
-/// How far all roots of p + α, of (p + α)(p + κ) or of p² + β p + α are from the axis at least, 1/s. Of two real roots the smaller one is α over the larger, which is below β; a pair has the real part
-/// −β/2.
+/// How far all roots of p + α, of (p + α)(p + κ) or of p² + β p + α are from the axis, 1/s. Of two real roots the smaller one is their product α over
+/// the larger; a pair has the real part −β/2, and so have two equal ones, which rounding may part.
 pub(crate) fn slowest_per_s(following: &Following) -> f64 {
+    /// Of what rounding of α and β parts, as a part of the square of β/2.
+    const EQUAL: f64 = 1e-12;
     let (alpha, beta) = (following.alpha, following.beta);
     match following.design {
         FollowingDesign::Continuous => alpha,
         FollowingDesign::Observer { kappa } => alpha.min(kappa),
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
-            (0.5 * beta).min(alpha / beta) * (1.0 - 1e-12)
+            let half = 0.5 * beta;
+            let square = half * half - alpha;
+            let slowest = if square > EQUAL * half * half { alpha / (half + square.sqrt()) } else { half };
+            // Without the digits that rounding left behind.
+            format!("{slowest:.11e}").parse().unwrap_or(slowest)
+        }
+    }
+}
+
+/// The same as a bound that is certain: of roots that are nearly equal rounding knows half of the digits.
+pub(crate) fn certainly_slowest_per_s(following: &Following) -> f64 {
+    match following.design {
+        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => slowest_per_s(following),
+        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+            (1.0 - 4e-6) * slowest_per_s(following)
         }
     }
 }

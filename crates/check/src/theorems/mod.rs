@@ -10,7 +10,7 @@ mod theorem_1;
 mod theorem_3;
 mod tried;
 
-pub(crate) use following::slowest_per_s;
+pub(crate) use following::certainly_slowest_per_s;
 pub(crate) use own_targets::hurwitz;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AttitudeLaw, Setup};
+use forwardstep_sim::{AgentSetup, AttitudeLaw, Law, PassivityFilterLaw, Setup, TaskSpaceLaw};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
 use crate::kinds::Claim;
@@ -40,10 +40,17 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
             let tracking = setup.tracks(index);
             // A formation may travel: of an offset only the derivatives count.
             let lowest = if tracking { 0 } else { 1 };
-            let bounded = match how_far(target, lowest..=needed, setup.time.end_s) {
+            let known = |target: &Trajectory| how_far(target, lowest..=needed, setup.time.end_s);
+            let bounded = match (known(target), attitude_from(agent)) {
                 // A quaternion of any length: that it grows says nothing of the attitude.
-                Bounded::Unbounded { .. } if agent.law.is::<AttitudeLaw>() => Bounded::NotShown,
-                bounded => bounded,
+                (Bounded::Unbounded { .. }, Some(first)) => {
+                    let position = target.paths().get(..first).and_then(|paths| Trajectory::new(paths.to_vec()).ok());
+                    match position.as_ref().map(known) {
+                        Some(unbounded @ Bounded::Unbounded { .. }) => unbounded,
+                        Some(Bounded::ForEver | Bounded::NotShown) | None => Bounded::NotShown,
+                    }
+                }
+                (bounded, _) => bounded,
             };
             let group = Group { derivatives: needed, tracking, bounded };
             groups.entry(group).or_default().push(Named::of(setup, index));
@@ -55,6 +62,14 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
         Hypothesis::about(Id::BoundedTarget, subject, MotionEvidence::Derivatives(bounded))
     };
     groups.into_iter().map(hypothesis).collect()
+}
+
+/// The first entry of the quaternion in what is followed, which of any length stands for an attitude.
+fn attitude_from(agent: &AgentSetup) -> Option<usize> {
+    if agent.law.is::<AttitudeLaw>() || agent.law.is::<PassivityFilterLaw>() {
+        return Some(0);
+    }
+    agent.law.downcast::<TaskSpaceLaw>()?.interface(&agent.robot)?.coordinates?.quaternion
 }
 
 /// Agents that share a hypothesis: those of which the same is asked and found.

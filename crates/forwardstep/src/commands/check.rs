@@ -31,8 +31,8 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     {
         return complain(&error);
     }
-    let predictions =
-        options.predict.then(|| predictions(&scenario.setup, &mut |_| ControlFlow::Continue(()))).flatten();
+    let predicted = || predictions(&scenario.setup, options.thorough, &mut |_| ControlFlow::Continue(()));
+    let predictions = options.predict.then(predicted).flatten();
     if options.json {
         let findings = Findings::of(
             &scenario,

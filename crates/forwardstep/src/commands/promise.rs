@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use forwardstep::check::prediction::guaranteed::WORK;
-use forwardstep::check::prediction::{NoRate, guaranteed_rate, period_rate, rate};
+use forwardstep::check::prediction::{COURSE_WORK, NoRate, course_within, guaranteed_rate, period_rate_within, rate};
 use forwardstep::check::{self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report};
 use forwardstep::io::output::Predictions;
 use forwardstep::io::scenario::Scenario;
@@ -25,6 +25,11 @@ impl Promise {
     pub(crate) fn value(&self) -> Option<&[f64]> {
         self.agreement.as_ref().ok().map(|prediction| prediction.value.as_slice())
     }
+
+    /// The same for people, with the digits that are known.
+    pub(crate) fn known_value(&self) -> String {
+        self.agreement.as_ref().map_or_else(|_| String::new(), |prediction| first(&prediction.known_digits()))
+    }
 }
 
 /// Looks at the hypotheses.
@@ -32,11 +37,17 @@ pub(crate) fn promise(setup: &Setup) -> Promise {
     Promise { report: check::check(setup), practical: check::practical(setup), agreement: check::predict(setup) }
 }
 
-/// Simulates the reference dynamics alone; nothing where there is nothing to predict, or `observer` interrupts.
-pub(crate) fn predictions(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Option<Predictions> {
-    let (course, rate) = (check::course(setup, observer), rate(setup));
+/// Simulates the reference dynamics alone, with as much work as is spent on a prediction, or `thorough`, with all that it takes; nothing where there is
+/// nothing to predict, or `observer` interrupts.
+pub(crate) fn predictions(
+    setup: &Setup,
+    thorough: bool,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Option<Predictions> {
+    let work = if thorough { f64::INFINITY } else { COURSE_WORK };
+    let (course, rate) = (course_within(setup, work, observer), rate(setup));
     let repeats = matches!(rate, Err(NoRate::NotFixed(NotFixed::Switching | NotFixed::VaryingDelay)));
-    let period = (repeats && course.is_ok()).then(|| period_rate(setup, observer));
+    let period = (repeats && course.is_ok()).then(|| period_rate_within(setup, work, observer));
     Predictions::of(setup, &course, &rate, period.as_ref(), &guaranteed_rate(setup, WORK))
 }
 
@@ -112,9 +123,10 @@ pub(crate) fn style(answer: Answer) -> anstyle::Style {
     }
 }
 
-/// Numbers to a precision that people compare by; of many the first few.
+/// Numbers to a precision that people compare by; of many the first few. What rounds to zero has no sign.
 pub(crate) fn list(values: &[f64]) -> String {
-    first(&values.iter().map(|value| format!("{value:.6}")).collect::<Vec<_>>())
+    // Adding zero takes the sign from a zero.
+    first(&values.iter().map(|value| format!("{:.6}", (value * 1e6).round() / 1e6 + 0.0)).collect::<Vec<_>>())
 }
 
 fn first(values: &[String]) -> String {

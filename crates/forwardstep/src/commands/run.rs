@@ -59,7 +59,9 @@ pub(super) fn execute(
     show(scenario, promise, console);
     let (setup, mut bar) = (&scenario.setup, Bar::new());
     let predicts = options.predict || predicts_quickly(setup);
-    let prediction = if predicts { predictions(setup, &mut |progress| watch(&mut bar, stop, progress)) } else { None };
+    let thorough = options.predict;
+    let mut seen = |progress| watch(&mut bar, stop, progress);
+    let prediction = if predicts { predictions(setup, thorough, &mut seen) } else { None };
     bar.clear();
     match &prediction {
         Some(prediction) => show_predictions(setup, prediction, console),
@@ -126,7 +128,7 @@ pub(super) fn execute(
     if cut_short.is_some() {
         remark("Interrupted while comparing with continuous time; the run itself is complete.");
     }
-    console.text(summary(&record, &metrics, path, &files));
+    console.text(summary(&record, &metrics, &promise.known_value(), path, &files));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
         _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),

@@ -24,7 +24,14 @@ fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String 
 }
 
 /// A few lines: what was promised, what happened, what it cost, and where it is.
-pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, files: &[PathBuf]) -> String {
+/// `predicted` is the value that they are to agree on, with the digits that are known.
+pub(crate) fn summary(
+    record: &RunRecord<'_>,
+    metrics: &Metrics,
+    predicted: &str,
+    folder: &Path,
+    files: &[PathBuf],
+) -> String {
     let RunRecord { setup, outcome, .. } = record;
     let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
     if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
@@ -47,9 +54,8 @@ pub(crate) fn summary(record: &RunRecord<'_>, metrics: &Metrics, folder: &Path, 
         rows.push(("final tracking error", format!("|s| ≤ {}", short(s))));
     }
     if let Some(agreement) = &metrics.agreement {
-        let predicted: Vec<f64> = agreement.iter().map(|axis| axis.predicted).collect();
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
-        rows.push(("predicted agreement", list(&predicted)));
+        rows.push(("predicted agreement", predicted.to_owned()));
         rows.push((reached_words(&metrics.disagreement), list(&reached)));
     }
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {

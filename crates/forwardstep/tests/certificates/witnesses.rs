@@ -143,3 +143,54 @@ fn terms_and_factors_of_chains_are_refuted_by_a_state() {
     let smooth = judged(&chain("chi = \"abs(x)^1.5\""), "defined-terms");
     assert_eq!(smooth, ("holds".to_owned(), "accepted".to_owned()));
 }
+
+/// A planar arm of one metre and 0.8 m on a run of 20 s.
+fn reaching(target: &str) -> String {
+    format!(
+        "format = 2\ntime.end_s = 20\n[[agents]]\nname = \"arm\"\nrobot.planar_arm = {{ mass_kg = [2, 1.5], length_m = [1, 0.8] }}\n\
+         start.position_rad = [0.6, 0.9]\ntarget.{target}\n[reference.tracking]\n[law.task_space]\n"
+    )
+}
+
+#[test]
+fn regress_a_target_is_within_reach_for_all_time_or_leaves_it_after_the_run() {
+    let id = "target-within-reach";
+    violated(&reaching("formulas = [\"1 + 0.9*sin(t/100)\", \"0\"]"), id, "out-of-reach");
+    let wave = |amplitude: f64, rate: f64, phase: f64| {
+        format!("waves = [{{ amplitude = {amplitude}, rad_per_s = {rate}, phase_rad = {phase} }}]")
+    };
+    let slow = wave(0.9, 0.01, 0.0);
+    violated(&reaching(&format!("sinusoids = [{{ offset = 1, {slow} }}, {{ offset = 0 }}]")), id, "out-of-reach");
+    let circle =
+        reaching(&format!("sinusoids = [{{ {} }}, {{ {} }}]", wave(1.4, 1.0, 1.570_796_3), wave(1.4, 1.0, 0.0)));
+    assert_eq!(judged(&circle, id), ("holds".to_owned(), "accepted".to_owned()));
+    let edge = reaching("formulas = [\"1.8\", \"0\"]");
+    assert_eq!(judged(&edge, id), ("not shown".to_owned(), "could not check".to_owned()));
+}
+
+/// A quaternion of any length is an attitude: that one grows says nothing of where a spacecraft turns.
+#[test]
+fn regress_a_quaternion_that_grows_refutes_no_bound_of_an_attitude() {
+    for law in ["passivity_filter", "attitude"] {
+        let text = format!(
+            "format = 2\ntime.end_s = 20\n[[agents]]\nname = \"craft\"\ntarget.formulas = [0, 0, \"t + 1\", \"t + 1\"]\n\
+             robot.spacecraft = {{ inertia_kg_m2 = [[10, 0.5, -0.3], [0.5, 8, 0.2], [-0.3, 0.2, 6]] }}\n[reference.tracking]\n[law.{law}]\n"
+        );
+        let expected = ("not shown".to_owned(), "could not check".to_owned());
+        assert_eq!(judged(&text, "bounded-target"), expected, "{law}");
+    }
+}
+
+/// The sum of the sizes of every derivative is 5.415, the largest value 3.864.
+#[test]
+fn regress_two_waves_without_a_common_period_need_no_larger_gain_than_they_come_to() {
+    let folder = folder();
+    let file = folder.path().join("own.toml");
+    let own = "format = 2\ntime.end_s = 30\n[leader]\nmotion.formulas = [\"sin(t) + sin(sqrt(2)*t)\"]\n[[agents]]\nname = \"m\"\n\
+               robot.point_mass = { dimension = 1, mass_kg = 2 }\nstart.position_m = [0.5]\n[reference.leader]\n\
+               design = \"continuous\"\nroots_per_s = [1]\ngain = 4\n[law.known]\n[network]\nedges = [[\"leader\", \"m\"]]\n";
+    fs::write(&file, own).unwrap();
+    let found = checked(&certified(file.to_str().unwrap(), folder.path()), &file);
+    let entry = found["entries"].as_array().unwrap().iter().find(|entry| entry["id"] == "sign-gain").unwrap().clone();
+    assert_eq!(entry["answer"], "holds", "{found}");
+}

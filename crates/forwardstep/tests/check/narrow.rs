@@ -178,3 +178,47 @@ fn regress_where_no_torque_is_foreseen_no_ratio_to_it_is_printed() {
     let said = stdout(&forwardstep(&folder, &["check", "--predict", "two.toml"]).code(1));
     assert!(said.contains("peak torque 0.000 N") && !said.contains("NaN"), "{said}");
 }
+
+#[test]
+fn regress_an_end_is_not_advised_where_the_slope_has_none() {
+    let delay = |formula: &str| masses(&format!("delay.formula_s = \"{formula}\"\n"));
+    let advised = |formula: &str| answered(&folder(), &delay(formula), "bounded-delays").1;
+    assert!(advised("abs(t*sin(t))").ends_with("or one constant"), "{}", advised("abs(t*sin(t))"));
+    assert_eq!(advised("sqrt(1 + t)"), "an end of the formula T, such as min(T, 1)");
+    assert_eq!(answer(&delay("min(sqrt(1 + t), 1)"), "bounded-delays"), "holds");
+}
+
+#[test]
+fn regress_numbers_of_any_size_are_said_as_they_are() {
+    let said = |text: &str, arguments: &[&str]| {
+        let folder = with(text);
+        let arguments = [&["check", "two.toml"], arguments].concat();
+        String::from_utf8(forwardstep(&folder, &arguments).get_output().stdout.clone()).unwrap()
+    };
+    let tiny = said(&masses("delay.constant_s = 1e-300\n"), &["--predict"]);
+    assert!(tiny.contains("for any delays up to 1 × 10⁻³⁰⁰ s"), "{tiny}");
+    let led = |gain: &str, design: &str, roots: &str| {
+        format!(
+            "format = 2\ntime.end_s = 10\n[leader]\nmotion.formulas = [\"sin(t)\"]\n[[agents]]\nname = \"m\"\n\
+             robot.point_mass = {{ dimension = 1, mass_kg = 2 }}\nstart.position_m = [1.0]\n[reference.leader]\n\
+             design = \"{design}\"\nroots_per_s = {roots}\ngain = {gain}\n[law.known]\n[network]\nedges = [[\"leader\", \"m\"]]\n"
+        )
+    };
+    assert!(said(&led("1e-12", "continuous", "[1]"), &[]).contains("γ is 1e-12"));
+    for (roots, slowest) in [("[1.0, 1.0]", "−1"), ("[0.1, 0.1]", "−0.1"), ("[3.0, 0.5]", "−0.5")] {
+        let text = said(&led("5", "differentiable", roots), &[]);
+        assert!(text.contains(&format!("the real part of every root is {slowest} per second at most")), "{text}");
+    }
+}
+
+#[test]
+fn what_is_predicted_beside_a_start_that_is_not_on_its_course_says_so() {
+    let folder =
+        with(&masses("").replacen("start.position_m", "start.reference.z = [[3.0], [0.0]]\nstart.position_m", 1));
+    let text = stdout(&forwardstep(&folder, &["check", "two.toml", "--predict"]).success());
+    assert!(text.contains("s with s ≡ 0 (but s starts from 3 m/s, V from 9 J, which can delay it)"), "{text}");
+    assert!(text.contains("without a bound, since s does not start from zero"), "{text}");
+    let folder = with(&masses(""));
+    let text = stdout(&forwardstep(&folder, &["check", "two.toml", "--predict"]).success());
+    assert!(text.contains("settled to 1 % after") && !text.contains("can delay it"), "{text}");
+}

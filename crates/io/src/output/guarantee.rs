@@ -167,8 +167,14 @@ impl GuaranteedClass {
     }
 }
 
-/// Three digits, none of them too small.
+/// Three digits, none of them too small; with a power of ten where decimals would be long.
 fn above(value: f64) -> String {
+    if value > 0.0 && value < 1e-3 {
+        let power = value.log10().floor().max(-307.0);
+        // A decimal that rounding has put just above itself stays what it is.
+        let digits = (100.0 * (value / 10.0_f64.powf(power)) * (1.0 - 16.0 * f64::EPSILON)).ceil() / 100.0;
+        return format!("{digits} × 10{}", superscript(power as i32));
+    }
     let places = (2 - value.log10().floor().clamp(-12.0, 2.0) as i32).max(0) as usize;
     let scale = 10.0_f64.powi(places as i32);
     // A decimal that rounding has put just above itself stays what it is.
@@ -185,6 +191,7 @@ mod tests {
     fn what_is_guaranteed_is_rounded_upwards() {
         let said = [0.0012341, 0.5, 12.301, 12.3, 100.2, 1234.5, 0.0].map(above);
         assert_eq!(said, ["0.00124", "0.5", "12.4", "12.3", "101", "1235", "0"]);
+        assert_eq!([1e-300, 2.345e-9].map(above), ["1 × 10⁻³⁰⁰", "2.35 × 10⁻⁹"]);
     }
 
     #[test]

@@ -59,6 +59,12 @@ pub struct CourseFound {
     pub within: Option<Vec<[f64; 2]>>,
     /// The largest torque of every axis of robots under the adaptive or the known law.
     pub peak_torques: Vec<PredictedTorque>,
+    /// The largest |s(0)| of an axis, where z(0) is given beside the velocity: so far from s ≡ 0 a run begins; null where it begins there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_error: Option<f64>,
+    /// V(0) of all robots under the adaptive or the known law, J; null where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start_energy_j: Option<f64>,
 }
 
 /// The largest torque of an axis.
@@ -77,8 +83,8 @@ pub struct PredictedTorque {
     /// How far the estimate starts from the truth: the largest relative error of a parameter.
     #[serde(deserialize_with = "number::or_nan")]
     pub estimate_off: f64,
-    /// What its size cannot exceed while V ≤ V(0) and the state stays near that of s ≡ 0, N m or N; null where V(0) is not known, or V may
-    /// grow, as with pushes and under digital control.
+    /// What its size cannot exceed while V ≤ V(0) and the state stays near that of s ≡ 0, N m or N; null where V(0) is not known, V may
+    /// grow, as with pushes and under digital control, or the run begins with an s(0).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_most: Option<f64>,
 }
@@ -181,7 +187,8 @@ impl Predictions {
             PredictedCourse::NoneSince(reason) => sentences.push(format!("course of agreement: none, since {reason}")),
             PredictedCourse::Found(course) => {
                 let reached = if course.reached { "agreement is reached" } else { "agreement is not reached" };
-                let settled = course.settled_s.map(|t_s| format!(", settled to 1 % after {t_s:.2} s"));
+                let delayed = course.delay(setup);
+                let settled = course.settled_s.map(|t_s| format!(", settled to 1 % after {t_s:.2} s{delayed}"));
                 let last = course.disagreement.last().copied().unwrap_or(f64::NAN);
                 let end_s = course.t_s.last().copied().unwrap_or(f64::NAN);
                 let settled = settled.unwrap_or_default();
@@ -241,7 +248,29 @@ impl CourseFound {
                     at_most: peak.at_most,
                 })
                 .collect(),
+            start_error: Some(course.start.s).filter(|s| *s > 0.0),
+            start_energy_j: course.start.energy_j,
         }
+    }
+
+    /// What keeps a run from settling as s ≡ 0 does, to stand behind the time.
+    fn delay(&self, setup: &Setup) -> String {
+        let energy = match self.start_energy_j {
+            Some(energy_j) if energy_j > 0.0 => format!(", V from {} J", number_words(energy_j)),
+            Some(_) | None => String::new(),
+        };
+        let off = self.peak_torques.iter().map(|peak| peak.estimate_off).fold(0.0, f64::max);
+        let begins = self.start_error.map(|s| {
+            let unit = names::gap_unit(setup);
+            let unit = if unit.is_empty() { "in its unit".to_owned() } else { format!("{unit}/s") };
+            format!("s starts from {} {unit}", number_words(s))
+        });
+        let far = (off > NEAR).then(|| "estimates start far from the truth".to_owned());
+        let reasons: Vec<String> = begins.into_iter().chain(far).collect();
+        if reasons.is_empty() {
+            return String::new();
+        }
+        format!(" with s ≡ 0 (but {}{energy}, which can delay it)", reasons.join(" and "))
     }
 
     /// The disagreement at times that rise, by straight lines between those that are kept.
@@ -275,7 +304,7 @@ impl CourseFound {
     fn value_sentence(&self, setup: &Setup) -> Option<String> {
         let within = self.within.as_ref().filter(|_| self.reached)?;
         let middles: Vec<String> =
-            within.iter().take(MOST_AXES).map(|[low, high]| number_words(low + 0.5 * (high - low))).collect();
+            within.iter().take(MOST_AXES).map(|[low, high]| number_words(middle(*low, *high))).collect();
         let widest = within.iter().map(|[low, high]| 0.5 * (high - low)).fold(0.0, f64::max);
         let more = if within.len() > MOST_AXES { ", …" } else { "" };
         // (58) ends where ṡ is zero, not s.
@@ -297,16 +326,26 @@ impl CourseFound {
             _ => "; estimates start far from the truth, where the torque can be another".to_owned(),
         };
         // Twice the prediction is too much to choose a motor by.
-        let at_most = peak.at_most.map_or_else(String::new, |at_most| match at_most / peak.value.abs() {
-            ratio if ratio <= 1.0 || at_most == 0.0 => String::new(),
-            // Nothing is a share of no torque.
-            ratio if ratio <= 2.0 || peak.value == 0.0 => {
-                format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course")
-            }
-            ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
-        });
+        let beside =
+            if self.start_error.is_some() { "; without a bound, since s does not start from zero" } else { "" };
+        let at_most = peak.at_most.map_or_else(
+            || beside.to_owned(),
+            |at_most| match at_most / peak.value.abs() {
+                ratio if ratio <= 1.0 || at_most == 0.0 => String::new(),
+                // Nothing is a share of no torque.
+                ratio if ratio <= 2.0 || peak.value == 0.0 => {
+                    format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course")
+                }
+                ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
+            },
+        );
         Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.value.abs(), peak.t_s))
     }
+}
+
+/// The middle of an interval; what cannot be told from zero is zero.
+fn middle(low: f64, high: f64) -> f64 {
+    if low <= 0.0 && high >= 0.0 { 0.0 } else { low + 0.5 * (high - low) }
 }
 
 /// Axes whose value is said.
@@ -328,6 +367,7 @@ mod tests {
             within: Ok(vec![[0.0, 0.0]]),
             settled: forwardstep_check::prediction::Settled::NotYet,
             peak_torques: Vec::new(),
+            start: forwardstep_check::prediction::StartError::default(),
         };
         let found = CourseFound::of(&course);
         assert!(found.t_s.len() <= MOST_POINTS + 1);

@@ -40,12 +40,13 @@ impl DelayFunction for BoundedFormula {
         } else if for_ever.reaches.high == f64::INFINITY {
             // Twice what the run has, so that it cannot be taken for what the run has.
             let twice = 2.0 * on_run.high.max(0.5);
-            Some(Refuted::Unbounded(self.seen_outside(Interval { low: f64::NEG_INFINITY, high: twice })))
+            let witness = self.seen_outside(Interval { low: f64::NEG_INFINITY, high: twice });
+            Some(Refuted::Unbounded { witness, steep: self.is_steep(1.0) })
         } else {
             None
         };
         let unknown = if !(for_ever.within.low >= 0.0 && for_ever.within.high.is_finite()) {
-            Some(Unknown::FormulaBound)
+            Some(if self.is_steep(on_run.high) { Unknown::FormulaSteep } else { Unknown::FormulaBound })
         } else if !for_ever.uniform {
             Some(Unknown::FormulaContinuity)
         } else {
@@ -56,5 +57,13 @@ impl DelayFunction for BoundedFormula {
 
     fn arrivals(&self, search: &mut Arrivals<'_>) {
         search.enclosed(|[low, high]| self.formula().enclose(Interval { low, high }));
+    }
+}
+
+impl BoundedFormula {
+    /// Whether an end at `most` is not shown to make it uniformly continuous and bounded.
+    fn is_steep(&self, most: f64) -> bool {
+        let ended = self.formula().clone().larger(0.0).smaller(most).for_ever();
+        !(ended.uniform && ended.within.is_finite())
     }
 }

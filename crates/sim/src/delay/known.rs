@@ -31,6 +31,8 @@ pub struct Known {
 pub enum Unknown {
     /// Interval arithmetic found no bound of a formula for all time.
     FormulaBound,
+    /// The same, and no end of it is shown to be uniformly continuous.
+    FormulaSteep,
     /// A formula may change faster and faster.
     FormulaContinuity,
     /// Any number of packets may be lost one after another.
@@ -46,8 +48,13 @@ pub enum Unknown {
 /// Why a delay is not one that is bounded for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refuted {
-    /// It exceeds every bound; such as this one.
-    Unbounded(Option<Witness>),
+    /// It exceeds every bound.
+    Unbounded {
+        /// A value beyond all of the run.
+        witness: Option<Witness>,
+        /// Whether an end of it is not shown to make it uniformly continuous, since its slope may have no bound either.
+        steep: bool,
+    },
     /// It becomes negative after the run: messages from the future.
     Negative(Option<Witness>),
     /// A link loses every packet.

@@ -150,6 +150,15 @@ impl Hearing {
         }
     }
 
+    /// What everybody sent before t = 0, where that is not the state at t = 0: a message of every agent.
+    pub(crate) fn told_before(&mut self, messages: &[Vec<f64>]) {
+        for (port, message) in self.ports.iter().zip(messages) {
+            for (c, value) in message.iter().take(self.entries).enumerate() {
+                self.initial[port.entry + c * port.stride] = *value;
+            }
+        }
+    }
+
     /// The last value of a delay that was outside of what its author says. What is heard there is not a number.
     pub(crate) fn refuted(&self) -> Option<Refuted> {
         self.refuted

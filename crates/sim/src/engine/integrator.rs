@@ -132,6 +132,11 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// What everybody sent before t = 0; see [`Hearing::told_before`].
+    pub(crate) fn told_before(&mut self, messages: &[Vec<f64>]) {
+        self.hearing.told_before(messages);
+    }
+
     /// The least that history takes when all agents together send so many numbers.
     pub(crate) fn least_bytes(numbers: usize) -> u64 {
         History::least_bytes(COEFFICIENTS.saturating_mul(numbers))

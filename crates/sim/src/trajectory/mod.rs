@@ -11,6 +11,7 @@
 mod norm;
 mod pieces;
 mod spline;
+mod waves;
 
 use forwardstep_core::Scalar;
 use forwardstep_core::controller::{Jet, JetsBuffer};
@@ -20,6 +21,7 @@ use thiserror::Error;
 
 use crate::formula::{Witness, times_s};
 
+use self::waves::narrowed;
 pub use norm::LeastNorm;
 pub(crate) use pieces::Pieces;
 pub use spline::{Spline, SplineError};
@@ -157,7 +159,7 @@ impl Path {
         match self {
             Path::Formula(formula) => match end_s {
                 Some(end_s) => formula.bounds_of_derivatives(weights, 0.0, end_s),
-                None => formula.combination_for_ever(weights).within,
+                None => narrowed(formula.combination_for_ever(weights).within, formula, weights),
             },
             Path::Sinusoids { offset, waves } => sinusoids(*offset, waves, weights, end_s),
             Path::Spline(spline) => spline.bounds(weights, end_s),
@@ -401,8 +403,7 @@ impl Trajectory {
 
     /// The square of the norm of all axes together as a formula in t; `None` where one is a curve through points.
     pub fn squared_norm(&self) -> Option<Expression> {
-        let squares = self.paths.iter().map(|path| Some(path.formula()?.power(2.0)));
-        squares.reduce(|sum, square| Some(sum? + square?)).flatten()
+        self.squared_distance(&vec![0.0; self.axes()])
     }
 
     /// The largest |Σₖ `weights[k]` · (k-th derivative)| of any axis at `samples` + 1 times from 0 to `end_s`: no bound, but

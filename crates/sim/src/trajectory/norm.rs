@@ -1,12 +1,16 @@
-//! Where the norm of a motion is least: a quaternion of any length is an attitude unless that is zero.
+//! Where the norm of a motion is least: a quaternion of any length is an attitude unless that is zero. How far a motion is from a point.
+
+use forwardstep_core::expression::{Expression, Interval};
 
 use super::{Path, Trajectory};
-use crate::formula::times_s;
+use crate::formula::{Witness, times_s};
 
 /// Looks at a run.
 const PARTS: u32 = 2000;
 /// So many times as long as a run it is looked for a norm that vanishes.
 const MOST_LATER: f64 = 1e3;
+/// Looks at one period of a distance that is longer than the run.
+const OF_PERIOD: u32 = 4000;
 
 /// Where a motion was seen nearest to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +88,31 @@ impl Trajectory {
         })
     }
 
+    /// The square of the distance of the first axes from a point, as a formula in t; `None` where one of them is a curve through points.
+    pub fn squared_distance(&self, from: &[f64]) -> Option<Expression> {
+        let squares = self.paths.iter().zip(from).map(|(path, from)| {
+            let formula = path.formula()?;
+            let seen = if *from == 0.0 { formula } else { formula + -*from };
+            Some(seen.power(2.0))
+        });
+        squares.reduce(|sum, square| Some(sum? + square?)).flatten()
+    }
+
+    /// When the square of the distance of the first axes from a point is certainly outside of `range` after `end_s`, and that square: the
+    /// first of many times looked at. They have six decimals at most, so that they can be told as they are.
+    pub fn leaves_later(&self, from: &[f64], range: Interval, end_s: f64) -> Option<Witness> {
+        let square = self.squared_distance(from)?;
+        let period_s = square.period().filter(|period_s| *period_s > end_s);
+        let of_period = period_s.into_iter().flat_map(|period_s| {
+            (0..=OF_PERIOD).map(move |k| end_s + (period_s - end_s) * f64::from(k) / f64::from(OF_PERIOD))
+        });
+        of_period.chain(times_s(end_s)).filter(|t_s| *t_s >= end_s).map(rounded).find_map(|t_s| {
+            // Decimals are no binary numbers.
+            let around = Interval { low: t_s.next_down().max(0.0), high: t_s.next_up() };
+            Witness::outside(t_s, square.enclose(around), range)
+        })
+    }
+
     /// Where the norm is least between two times, if it has one minimum there.
     fn least_between(&self, mut left: f64, mut right: f64) -> f64 {
         for _ in 0..100 {
@@ -92,4 +121,9 @@ impl Trajectory {
         }
         left
     }
+}
+
+/// To six decimals, where a number has more.
+fn rounded(t_s: f64) -> f64 {
+    if t_s < 1e9 { (t_s * 1e6).round() / 1e6 } else { t_s }
 }

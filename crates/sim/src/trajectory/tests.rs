@@ -228,3 +228,35 @@ fn a_norm_that_passes_zero_between_two_looks_vanishes() {
     let growing = of(t() + 0.5).least_norm(60.0);
     assert_eq!((growing.t_s, growing.norm), (0.0, 0.5));
 }
+
+/// Frequencies without a common period, for which interval arithmetic adds the sizes of every term.
+#[test]
+fn regress_a_formula_of_sines_is_bounded_like_the_waves_that_it_is() {
+    let two = || t().sin_of() + (t() * 2.0_f64.sqrt()).sin_of();
+    let waves = [1.0, 2.0_f64.sqrt()].map(|rad_per_s| Sinusoid { amplitude: 1.0, rad_per_s, phase_rad: 0.0 });
+    let weights = [0.0, 1.0, 1.0];
+    let stated = Path::Sinusoids { offset: 0.0, waves: waves.to_vec() }.bounds(&weights, None);
+    let size = 2.0_f64.sqrt() + 6.0_f64.sqrt();
+    for formula in [two(), (two() * 2.0 - two()) / 1.0, two() + t().cos_of() * 0.5 - t().cos_of() * 0.5 + 7.0] {
+        let found = Path::Formula(formula).bounds(&weights, None);
+        assert!(close(found.high, size, 1e-9) && close(found.low, -size, 1e-9), "{found:?}");
+        assert!(found.high >= size - 1e-12 && close(found.high, stated.high, 1e-9), "{found:?} {stated:?}");
+    }
+    // sin t + cos t is √2 sin(t + π/4), beside another frequency too.
+    let joined = Path::Formula(t().sin_of() + t().cos_of() + (t() * 2.0_f64.sqrt()).sin_of());
+    assert!(close(joined.bounds(&[1.0], None).high, 2.0_f64.sqrt() + 1.0, 1e-9));
+    // What is no such sum is bounded as before.
+    let other = Path::Formula(two() * two());
+    assert!(other.bounds(&[1.0], None).high >= 3.9);
+}
+
+#[test]
+fn a_distance_that_leaves_its_range_after_the_run_has_a_time_with_six_decimals() {
+    let wave = Path::Formula((t() * 0.01).sin_of() * 0.9 + 1.0);
+    let trajectory = Trajectory::new(vec![wave, Path::Formula(Expression::number(0.0))]).unwrap();
+    let range = Interval { low: 0.04, high: 3.24 };
+    let found = trajectory.leaves_later(&[0.0, 0.0], range, 20.0).unwrap();
+    assert!(found.t_s > 109.4 && found.t_s < 112.0 && found.value > 3.24, "{found:?}");
+    assert_eq!((found.t_s * 1e6).round() / 1e6, found.t_s);
+    assert_eq!(trajectory.leaves_later(&[0.0, 0.0], Interval { low: 0.0, high: 3.62 }, 20.0), None);
+}

@@ -94,7 +94,7 @@ pub enum WeightFault {
 /// Whether more can be known of a delay than the run shows.
 fn beyond_the_run(unknown: Unknown) -> bool {
     match unknown {
-        Unknown::FormulaBound | Unknown::FormulaContinuity | Unknown::NothingArrived => true,
+        Unknown::FormulaBound | Unknown::FormulaSteep | Unknown::FormulaContinuity | Unknown::NothingArrived => true,
         Unknown::PacketsInARow | Unknown::LaterPackets | Unknown::LaterHolds => false,
     }
 }
@@ -128,7 +128,7 @@ impl LinkEvidence {
             },
             LinkEvidence::RefutedDelay { .. } => Rigour::Sampled,
             LinkEvidence::RefutedBound(Refuted::EveryPacketLost) => Rigour::Exact,
-            LinkEvidence::RefutedBound(Refuted::Unbounded(_) | Refuted::Negative(_))
+            LinkEvidence::RefutedBound(Refuted::Unbounded { .. } | Refuted::Negative(_))
             | LinkEvidence::RefutedWeight { .. }
             | LinkEvidence::VaryingWeights { .. }
             | LinkEvidence::Weights { .. } => Rigour::Enclosed,

@@ -1,6 +1,5 @@
 //! Evidence of robots before they run: inertias for all postures, what bounds their dynamics, how far they reach.
 
-use super::holds;
 use crate::hypothesis::{Answer, Named, Rigour};
 use crate::practical::FastestDamping;
 
@@ -52,7 +51,7 @@ pub enum RobotEvidence {
         /// What it keeps within, where a run ends as it leaves them; for all such joints or for none.
         limits: Option<[f64; 2]>,
     },
-    /// A target keeps between distances that the tip can have.
+    /// A target keeps between distances that the tip can have, for all time.
     WithinReach {
         /// How far it is at least and at most.
         target: MotionExtent,
@@ -60,8 +59,6 @@ pub enum RobotEvidence {
         reach: MotionExtent,
         /// Whether all places in between can be reached, or it is only known that no others can.
         exact: bool,
-        /// Whether that is so for ever, or up to the end of the run.
-        for_ever: bool,
     },
     /// A target is where the tip cannot be.
     OutOfReach {
@@ -115,8 +112,9 @@ pub enum ReachSide {
 impl RobotEvidence {
     pub(super) fn answer(&self) -> Answer {
         match self {
-            RobotEvidence::UniformInertia { .. } | RobotEvidence::BoundedDynamics { .. } => Answer::Holds,
-            RobotEvidence::WithinReach { for_ever, .. } => holds(*for_ever),
+            RobotEvidence::UniformInertia { .. }
+            | RobotEvidence::BoundedDynamics { .. }
+            | RobotEvidence::WithinReach { .. } => Answer::Holds,
             RobotEvidence::Swung { limits: Some(_), .. } => Answer::Watched,
             RobotEvidence::Swung { limits: None, .. }
             | RobotEvidence::UnknownInertia { .. }
@@ -129,10 +127,10 @@ impl RobotEvidence {
         match self {
             RobotEvidence::BoundedDynamics { sliding: false } => Rigour::Exact,
             RobotEvidence::UniformInertia { .. } | RobotEvidence::SingularInertia { .. } => Rigour::Enclosed,
-            RobotEvidence::WithinReach { for_ever: true, .. } => Rigour::Enclosed,
-            RobotEvidence::BoundedDynamics { sliding: true }
-            | RobotEvidence::Swung { limits: None, .. }
-            | RobotEvidence::WithinReach { for_ever: false, .. } => Rigour::Computed,
+            RobotEvidence::WithinReach { .. } => Rigour::Enclosed,
+            RobotEvidence::BoundedDynamics { sliding: true } | RobotEvidence::Swung { limits: None, .. } => {
+                Rigour::Computed
+            }
             RobotEvidence::Swung { limits: Some(_), .. } => Rigour::Watched,
             RobotEvidence::UnknownInertia { .. }
             | RobotEvidence::OutOfReach { .. }

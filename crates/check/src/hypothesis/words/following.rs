@@ -3,24 +3,26 @@
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::formula::Witness;
 
-use super::numbers::{Shown, bound, bound_below, reached_above, rounded, rounded_up, seconds};
+use super::numbers::{Shown, as_it_is, bound, bound_below, reached_above, rounded, rounded_up, seconds};
 use crate::hypothesis::{Answer, FollowingEvidence};
 
 pub(super) fn words(evidence: &FollowingEvidence) -> String {
     match evidence {
         FollowingEvidence::Gain { gamma, seen, on_run, for_ever, reached, unbounded, end_s } => match reached {
             _ if evidence.answer() == Answer::Holds => {
-                format!("γ is {gamma}, and it never exceeds {}", bound_below(*for_ever, *gamma))
+                format!("γ is {}, and it never exceeds {}", as_it_is(*gamma), bound_below(*for_ever, *gamma))
             }
             Some(Witness { t_s, value }) => {
                 let (t_s, value) = (rounded(*t_s), reached_above(value.abs(), *gamma));
-                format!("γ is {gamma}, but at t = {t_s} s it is {value}{}", if *unbounded { GROWS } else { "" })
+                let grows = if *unbounded { GROWS } else { "" };
+                format!("γ is {}, but at t = {t_s} s it is {value}{grows}", as_it_is(*gamma))
             }
-            None if *unbounded => format!("γ is {gamma}{GROWS}"),
+            None if *unbounded => format!("γ is {}{GROWS}", as_it_is(*gamma)),
             None => not_shown([*gamma, *seen, *on_run, *for_ever], *end_s),
         },
         FollowingEvidence::GainOverAgent { gamma } => format!(
-            "γ is {gamma}; the leader is an agent, and the run says how large it becomes, and when it exceeds γ for the last time"
+            "γ is {}; the leader is an agent, and the run says how large it becomes, and when it exceeds γ for the last time",
+            as_it_is(*gamma)
         ),
         FollowingEvidence::Sign { choice, sampled, period_s, left, end_s, .. } => {
             let every = match sampled {
@@ -82,7 +84,7 @@ fn not_shown([gamma, seen, on_run, for_ever]: [f64; 4], end_s: f64) -> String {
     } else {
         "no bound could be shown".to_owned()
     };
-    format!("γ is {gamma}, and {run}; for all time {ever}")
+    format!("γ is {}, and {run}; for all time {ever}", as_it_is(gamma))
 }
 
 /// A number with as many digits as tell it from another.

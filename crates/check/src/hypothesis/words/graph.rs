@@ -4,7 +4,7 @@ use forwardstep_sim::Exchange;
 use forwardstep_sim::leader::FollowingDesign;
 
 use super::names;
-use super::numbers::seconds;
+use super::numbers::{as_it_is, seconds};
 use crate::hypothesis::{GraphEvidence, Named};
 
 /// Closed groups that are named.
@@ -61,14 +61,14 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
             names(closed_group)
         ),
         GraphEvidence::NeverSwitches => "the graph never switches".into(),
-        GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {dwell_s} s"),
+        GraphEvidence::ShortestPhase { dwell_s } => format!("the shortest phase lasts {} s", as_it_is(*dwell_s)),
         GraphEvidence::LoggedPhases { dwell_s: Some(dwell_s) } => {
-            format!("the shortest phase of the table lasts {dwell_s} s")
+            format!("the shortest phase of the table lasts {} s", as_it_is(*dwell_s))
         }
         GraphEvidence::LoggedPhases { dwell_s: None } => "the table has one phase".into(),
-        GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {least_s} s"),
+        GraphEvidence::DrawnPhases { least_s } => format!("no phase is shorter than {} s", as_it_is(*least_s)),
         GraphEvidence::DeclaredPhases { least_s } => {
-            format!("no phase is shorter than {least_s} s (declared, not shown)")
+            format!("no phase is shorter than {} s (declared, not shown)", as_it_is(*least_s))
         }
         GraphEvidence::RefutedSwitching { words, fault } => {
             format!("{words} is not what its author declares: {fault}")

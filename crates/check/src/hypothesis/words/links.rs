@@ -68,7 +68,7 @@ fn refuted_bound(refuted: Refuted) -> String {
         })
     };
     match refuted {
-        Refuted::Unbounded(witness) => {
+        Refuted::Unbounded { witness, .. } => {
             format!("a delay that is a formula exceeds every bound{}", at(witness, rounded_down))
         }
         Refuted::Negative(witness) => {
@@ -92,7 +92,7 @@ fn refuted_weight(fault: WeightFault, witness: Option<Witness>) -> String {
 
 fn reason(unknown: Unknown) -> &'static str {
     match unknown {
-        Unknown::FormulaBound => "a formula could not be shown to be bounded for ever",
+        Unknown::FormulaBound | Unknown::FormulaSteep => "a formula could not be shown to be bounded for ever",
         Unknown::FormulaContinuity => SWINGS,
         Unknown::PacketsInARow => {
             "any number of packets may be lost one after another, so no delay is the longest (`most_consecutive` would bound them)"

@@ -70,8 +70,19 @@ pub(super) fn reached_above(value: f64, limit: f64) -> Shown {
     Shown((4..17).map(|digits| -outwards(-value, digits)).find(|down| *down >= limit).unwrap_or(value))
 }
 
+/// Something above `limit`, rounded down, with as many digits as it takes to say so, and four at least.
+pub(super) fn above(value: f64, limit: f64) -> Shown {
+    let Shown(below) = bound_below(-value, -limit);
+    Shown(-below)
+}
+
+/// With all its digits.
+pub(super) fn as_it_is(value: f64) -> Shown {
+    Shown(value)
+}
+
 /// A time without the digits that rounding left behind.
-pub(super) fn seconds(t_s: f64) -> f64 {
+pub(crate) fn seconds(t_s: f64) -> f64 {
     (t_s * 1e6).round() / 1e6
 }
 

@@ -1,5 +1,6 @@
 //! Reference dynamics.
 
+use super::numbers::as_it_is;
 use crate::hypothesis::{ReferenceEvidence, TriedRun};
 
 /// The first of these numbers.
@@ -12,7 +13,7 @@ fn list(numbers: &[f64]) -> String {
 pub(super) fn words(evidence: &ReferenceEvidence) -> String {
     match evidence {
         ReferenceEvidence::Roots { smallest_per_s } => {
-            format!("roots −κ were given; the smallest κ is {smallest_per_s} per second")
+            format!("roots −κ were given; the smallest κ is {} per second", as_it_is(*smallest_per_s))
         }
         ReferenceEvidence::ComplexRoots { agent, pair } => format!(
             "{} has the complex roots −{} ± {}i per second. What it tells the others is then no average of what it is told, and networks \
@@ -20,7 +21,7 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             agent.name, pair.real, pair.imaginary
         ),
         ReferenceEvidence::Hurwitz { slowest_per_s } => {
-            format!("the real part of every root is −{slowest_per_s} per second at most")
+            format!("the real part of every root is −{} per second at most", as_it_is(*slowest_per_s))
         }
         ReferenceEvidence::Order(order) => format!("the order is {order}"),
         ReferenceEvidence::Orders([(a, order_a), (b, order_b)]) => {

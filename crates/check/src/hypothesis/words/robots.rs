@@ -1,8 +1,8 @@
 //! Robots before they run.
 
 use super::names;
-use super::numbers::{Shown, rounded, rounded_down, rounded_up};
-use crate::hypothesis::{InertiaUnit, Named, ReachSide, RobotEvidence};
+use super::numbers::{Shown, above, as_it_is, bound_below, rounded, rounded_down, rounded_up};
+use crate::hypothesis::{InertiaUnit, MotionExtent, Named, ReachSide, RobotEvidence};
 use crate::practical::FastestDamping;
 
 /// Joint positions that are written out.
@@ -49,11 +49,10 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
                 .into()
         }
         RobotEvidence::Swung { agents, joint, limits } => swung(agents, joint, *limits),
-        RobotEvidence::WithinReach { target, reach, exact, for_ever } => {
-            let until = if *for_ever { "" } else { " until the end of the run" };
+        RobotEvidence::WithinReach { target, reach, exact } => {
             let from = if *exact { "the shoulder" } else { "the first joint" };
             let target = format!(
-                "it keeps {} from {from}{until}",
+                "it keeps {} from {from}",
                 between(rounded_down(target.least.max(0.0)), rounded_up(target.most))
             );
             if *exact {
@@ -73,19 +72,52 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
             }
         }
         RobotEvidence::OutOfReach { side, t_s, distance_m, limit_m } => {
-            let (distance, limit) = (rounded(*distance_m), rounded(*limit_m));
-            let can = match side {
-                ReachSide::Beyond => format!("and the tip cannot be farther than {limit} m"),
-                ReachSide::Inside => format!("and the tip cannot be closer than {limit} m without a singular Jacobian"),
-            };
-            format!("at t = {} s it is {distance} m away, {can}", rounded(*t_s))
+            let at = format!("at t = {} s", as_it_is(*t_s));
+            match side {
+                ReachSide::Beyond => format!(
+                    "{at} it is {} m away, and the tip cannot be farther than {} m",
+                    above(*distance_m, *limit_m),
+                    limit(*limit_m)
+                ),
+                ReachSide::Inside if *limit_m <= 0.0 => {
+                    format!("{at} it is where the arm folds up entirely, and its Jacobian is singular")
+                }
+                ReachSide::Inside => format!(
+                    "{at} it is {} m away, and the tip cannot be closer than {} m without a singular Jacobian",
+                    bound_below(*distance_m, *limit_m),
+                    limit(*limit_m)
+                ),
+            }
         }
-        RobotEvidence::ReachNotShown { seen, reach } => format!(
-            "it was seen {} away, but what it does between two looks is not bounded well enough; the tip can be {}",
-            between(rounded(seen.least.max(0.0)), rounded(seen.most)),
-            between(rounded(reach.least.max(0.0)), rounded(reach.most))
-        ),
+        RobotEvidence::ReachNotShown { seen, reach } => {
+            if let Some(edge) = edge(seen, reach) {
+                return format!(
+                    "it comes to {} m, up to rounding the edge of what the tip can reach, where its Jacobian is singular",
+                    limit(edge)
+                );
+            }
+            format!(
+                "it was seen {} away, but neither is that shown to be so for all time, nor was it found to leave what the tip can \
+                 reach, {}",
+                between(above(seen.least, reach.least), bound_below(seen.most, reach.most)),
+                between(rounded(reach.least.max(0.0)), rounded(reach.most))
+            )
+        }
     }
+}
+
+/// The edge of what can be reached that a target comes to, but for rounding.
+pub(super) fn edge(seen: &MotionExtent, reach: &MotionExtent) -> Option<f64> {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * reach.most;
+    near(seen.most, reach.most).then_some(reach.most).or_else(|| {
+        // Of a tree no inner edge may be known.
+        (reach.least > 0.0 && near(seen.least, reach.least)).then_some(reach.least)
+    })
+}
+
+/// Lengths add up to decimals that binary numbers miss.
+fn limit(value: f64) -> Shown {
+    as_it_is((value * 1e6).round() / 1e6)
 }
 
 fn between(least: Shown, most: Shown) -> String {

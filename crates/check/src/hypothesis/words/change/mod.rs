@@ -22,6 +22,10 @@ const EDGES: usize = 4;
 /// A rate is that of a design for which somebody else answers.
 const SHIPPED: &str = "one of the shipped kinds, of which the parameters tell";
 
+/// A delay that is a formula and is known for all time.
+const STEADY: &str =
+    "a formula that stays bounded with its slope, such as one in sines of multiples of t, or one constant";
+
 /// What to change; `None` where the hypothesis holds.
 pub(in crate::hypothesis) fn change(evidence: &Evidence) -> Option<String> {
     if evidence.answer() == Answer::Holds {
@@ -107,7 +111,8 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
         }
         LinkEvidence::RefutedDelay { .. } => SHIPPED.into(),
         LinkEvidence::RefutedBound(refuted) => match refuted {
-            Refuted::Unbounded(_) => "an end of the formula T, such as min(T, 1)".into(),
+            Refuted::Unbounded { steep: true, .. } => STEADY.into(),
+            Refuted::Unbounded { steep: false, .. } => "an end of the formula T, such as min(T, 1)".into(),
             Refuted::Negative(_) => "max(T, 0) in the place of the formula T".into(),
             Refuted::EveryPacketLost => {
                 "a `probability` of loss below 1, with `most_consecutive` losses in a row".into()
@@ -129,10 +134,13 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
             rounded_up(*high)
         ),
         LinkEvidence::RefutedWeight { fault, .. } => match fault {
-            WeightFault::Fades | WeightFault::Negative => {
-                "a floor of the formula w, such as max(w, c) with a constant c > 0".into()
+            WeightFault::Fades => "a floor of the formula w, such as max(w, c) with a constant c > 0".into(),
+            WeightFault::Grows => {
+                "an end of the formula w, such as min(w, c) with a constant c, and a bounded slope".into()
             }
-            WeightFault::Grows => "an end of the formula w, such as min(w, c) with a constant c".into(),
+            WeightFault::Negative => {
+                "ends of the formula w, such as min(max(w, c), d) with constants 0 < c < d, and a bounded slope".into()
+            }
         },
         LinkEvidence::VaryingWeights { .. } => {
             "weights that are constant, or `design = \"continuous\"`, which is (110)".into()
@@ -144,7 +152,7 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
 fn known(reason: Unknown, bound_s: f64) -> String {
     match reason {
         Unknown::FormulaBound => format!("an end of the formula T, such as min(T, {})", bound(bound_s)),
-        Unknown::FormulaContinuity => "a formula whose slope stays bounded".into(),
+        Unknown::FormulaSteep | Unknown::FormulaContinuity => STEADY.into(),
         Unknown::PacketsInARow => "`most_consecutive` losses in a row".into(),
         Unknown::NothingArrived => "packets that arrive before the run ends, and a bound of their losses".into(),
         Unknown::LaterHolds => "a rule, such as `delay.random_hold`, in the place of a log".into(),

@@ -4,6 +4,7 @@ use forwardstep_sim::probe::Probe;
 
 use super::super::names;
 use super::super::numbers::{rounded_down, rounded_up};
+use super::super::robots::edge;
 use super::SHIPPED;
 use crate::hypothesis::{Bounded, FactorEverywhere, KindEvidence, MotionEvidence, ReachSide, RobotEvidence, Term};
 
@@ -144,13 +145,23 @@ pub(super) fn robot(evidence: &RobotEvidence) -> Option<String> {
         RobotEvidence::SingularInertia { agent, .. } => {
             format!("mass and inertia of its own for the last link of {}", agent.name)
         }
-        RobotEvidence::WithinReach { .. } | RobotEvidence::ReachNotShown { .. } => {
-            "a target of sines or formulas that repeat, clearly inside of what the tip can reach".into()
-        }
-        RobotEvidence::OutOfReach { side, limit_m, .. } => match side {
-            ReachSide::Beyond => format!("a target that keeps closer than {} m", rounded_down(*limit_m)),
-            ReachSide::Inside => format!("a target that keeps farther than {} m", rounded_up(*limit_m)),
+        RobotEvidence::ReachNotShown { seen, reach } => match edge(seen, reach) {
+            Some(limit_m) if limit_m == reach.most => {
+                format!("a target that keeps clearly closer than {} m", rounded_down(limit_m))
+            }
+            Some(limit_m) => format!("a target that keeps clearly farther than {} m", rounded_up(limit_m)),
+            None => {
+                "a target whose coordinates repeat with one period, clearly inside of what the tip can reach".into()
+            }
         },
-        RobotEvidence::UniformInertia { .. } | RobotEvidence::BoundedDynamics { .. } => return None,
+        RobotEvidence::OutOfReach { side, limit_m, .. } => match side {
+            ReachSide::Beyond => format!("a target that keeps closer than {} m at all times", rounded_down(*limit_m)),
+            ReachSide::Inside => {
+                format!("a target that keeps farther than {} m at all times", rounded_up(*limit_m))
+            }
+        },
+        RobotEvidence::UniformInertia { .. }
+        | RobotEvidence::BoundedDynamics { .. }
+        | RobotEvidence::WithinReach { .. } => return None,
     })
 }

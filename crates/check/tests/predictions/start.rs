@@ -1,0 +1,102 @@
+//! Runs that do not begin on the course that s ≡ 0 takes, and predictions that are more work than they are worth.
+
+use forwardstep_check::prediction::{COURSE_WORK, NoPeriodRate, Unfinished, course_within, period_rate_within};
+use forwardstep_check::{NoCourse, predict};
+use forwardstep_core::Gain;
+use forwardstep_sim::delay::Delay;
+use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::{Adaptive, Exchange, Setup, Signal};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use super::course::predicted;
+use super::{ends, three};
+use crate::common::{column, edge, run};
+
+/// Masses that hear velocities late, of which one has a z(0) beside its velocity.
+fn beside(exchange: Exchange, order: usize) -> Setup {
+    let mut setup = three(exchange);
+    for agent in &mut setup.agents {
+        agent.roots_per_s = [1.0, 1.7].as_slice()[..order].to_vec().into();
+    }
+    setup.agents[0].start.reference = vec![vec![3.0, -1.0]];
+    setup
+}
+
+#[test]
+fn regress_the_course_ends_at_the_value_that_is_predicted_where_velocities_were_sent_before_the_start() {
+    for (exchange, order) in [(Exchange::PositionVelocity, 2), (Exchange::PositionVelocity, 1), (Exchange::Position, 2)]
+    {
+        let setup = beside(exchange, order);
+        let (value, course) = (predict(&setup).unwrap().value, predicted(&setup));
+        let within = course.within.clone().unwrap();
+        for axis in 0..2 {
+            let reached = ends(&setup, 0, axis);
+            assert!((value[axis] - reached).abs() < 1e-5, "{exchange:?} {order}: {value:?}, not {reached}");
+            let [low, high] = within[axis];
+            assert!(
+                low <= value[axis] + 1e-6 && high >= value[axis] - 1e-6 && high - low < 1e-3,
+                "{value:?} {within:?}"
+            );
+        }
+        assert!((course.start.s - 3.0).abs() < 0.4 && course.start.energy_j.unwrap() > 0.0, "{:?}", course.start);
+    }
+}
+
+#[test]
+fn regress_a_run_that_begins_beside_its_reference_begins_with_its_own_torque() {
+    for (exchange, order) in [(Exchange::PositionVelocity, 1), (Exchange::Position, 1), (Exchange::Position, 2)] {
+        let setup = beside(exchange, order);
+        let outcome = run(&setup);
+        for peak in predicted(&setup).peak_torques {
+            let torque = column(&outcome, peak.agent, Signal::Torque, peak.axis);
+            assert!(peak.value.abs() >= torque[0].abs() - 1e-6, "{peak:?}, not {}", torque[0]);
+            assert!(peak.t_s > 0.0 || (peak.value - torque[0]).abs() < 1e-9, "{peak:?}, not {}", torque[0]);
+            assert_eq!(peak.at_most, None, "nothing keeps it near this course");
+        }
+    }
+}
+
+#[test]
+fn a_prediction_ends_where_its_work_does_and_says_so() {
+    let setup = three(Exchange::PositionVelocity);
+    let mut go_on = |_| ControlFlow::Continue(());
+    assert!(course_within(&setup, COURSE_WORK, &mut go_on).is_ok());
+    let Err(NoCourse::Unfinished(reason @ Unfinished::TooMuchWork { t_s, end_s })) =
+        course_within(&setup, 1e5, &mut go_on)
+    else {
+        panic!("it is too much")
+    };
+    assert!(t_s > 0.0 && t_s < end_s && end_s == 60.0, "{reason:?}");
+    assert!(reason.to_string().contains("`check --predict --thorough`"), "{reason}");
+    let mut turning = setup;
+    let phase = |from, to| Phase { edges: vec![edge(from, to, 1.0, 0)], dwell_s: 0.5 };
+    turning.network.schedule = Schedule::periodic(vec![phase(0, 1), phase(1, 2), phase(1, 0)]);
+    turning.network.delays = vec![Delay::constant(0.1)];
+    assert!(period_rate_within(&turning, COURSE_WORK, &mut go_on).is_ok());
+    let reason = period_rate_within(&turning, 1e5, &mut go_on);
+    assert!(matches!(reason, Err(NoPeriodRate::Unfinished(Unfinished::TooMuchWork { .. }))), "{reason:?}");
+}
+
+/// With one root ż has s in it at once.
+#[test]
+fn eq_what_v_can_add_to_a_torque_counts_what_s_adds_to_the_acceleration_that_is_asked_for() {
+    let mut setup = three(Exchange::Position);
+    setup.network.schedule = Schedule::fixed(Vec::new());
+    for agent in &mut setup.agents {
+        agent.robot.theta = vec![3.0];
+        (agent.start.q, agent.start.dq) = (vec![0.0; 2], vec![0.0; 2]);
+        agent.roots_per_s = [2.0].into();
+    }
+    let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
+    setup.agents[1].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![2.0], bounds: None });
+    // z falls from 0.2 by its root, and ż with it: the most is at the start.
+    setup.agents[1].start.dq = vec![0.2, 0.0];
+    let peaks = predicted(&setup).peak_torques;
+    let found = peaks.iter().find(|peak| (peak.agent, peak.axis) == (1, 0)).unwrap();
+    // √(2 V) = Δm/√γ, |s| ≤ √(2 V)/√m, and ż has −κ s in it.
+    let size = 1.0 / 2.0_f64.sqrt();
+    let through = 3.0 * 2.0 * size / 3.0_f64.sqrt();
+    let expected = 3.0 * 0.4 + size * (25.0 / 3.0 + 2.0 * 0.4 * 0.4_f64).sqrt() + through;
+    assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
+}
