@@ -92,8 +92,8 @@ pub fn course(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<(
     course_within(setup, f64::INFINITY, observer)
 }
 
-/// Work for a course, in nanoseconds, roughly: about two seconds.
-pub const COURSE_WORK: f64 = 2e9;
+/// Work for a course, in nanoseconds, roughly: about three seconds.
+pub const COURSE_WORK: f64 = 3e9;
 
 /// The same with so much `work`, such as [`COURSE_WORK`], which is counted, so that it ends at the same place everywhere.
 ///

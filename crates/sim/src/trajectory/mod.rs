@@ -134,7 +134,7 @@ impl Path {
             Path::Formula(formula) => formula.enclose_jet(t_s),
             Path::Spline(spline) => spline.enclose_jet(t_s),
             Path::Sinusoids { offset, waves } => std::array::from_fn(|k| {
-                let size = |wave: &Sinusoid| wave.amplitude.abs() * wave.rad_per_s.abs().powi(k as i32);
+                let size = |wave: &Sinusoid| (0..k).fold(wave.amplitude.abs(), |size, _| size * wave.rad_per_s.abs());
                 let most: f64 = waves.iter().map(size).sum();
                 Interval::point(if k == 0 { *offset } else { 0.0 }) + Interval { low: -most, high: most }
             }),
