@@ -110,7 +110,7 @@ impl Damped {
             return None;
         }
         let start = from_s.max(f64::from(n) / falls);
-        let size = most * rest * start.powi(n) * libm::exp(-falls * start) * (1.0 + 1e-9);
+        let size = most * rest * libm::pow(start, f64::from(n)) * libm::exp(-falls * start) * (1.0 + 1e-9);
         // What is too small for a number is not zero.
         let size = size.max(f64::MIN_POSITIVE);
         Some(Interval { low: -size, high: size })

@@ -111,7 +111,7 @@ impl Ratio {
             return Some(found).filter(|found| found.is_finite());
         }
         let room = 1.0 - 1e-12;
-        Some(found * Interval { low: from_s.powi(degree) * room, high: f64::INFINITY })
+        Some(found * Interval { low: libm::pow(from_s, f64::from(degree)) * room, high: f64::INFINITY })
     }
 
     /// By how much the degree of P exceeds that of Q.

@@ -161,8 +161,7 @@ fn regress_a_target_is_within_reach_for_all_time_or_leaves_it_after_the_run() {
     };
     let slow = wave(0.9, 0.01, 0.0);
     violated(&reaching(&format!("sinusoids = [{{ offset = 1, {slow} }}, {{ offset = 0 }}]")), id, "out-of-reach");
-    let circle =
-        reaching(&format!("sinusoids = [{{ {} }}, {{ {} }}]", wave(1.4, 1.0, 1.57), wave(1.4, 1.0, 0.0)));
+    let circle = reaching(&format!("sinusoids = [{{ {} }}, {{ {} }}]", wave(1.4, 1.0, 1.57), wave(1.4, 1.0, 0.0)));
     assert_eq!(judged(&circle, id), ("holds".to_owned(), "accepted".to_owned()));
     let edge = reaching("formulas = [\"1.8\", \"0\"]");
     assert_eq!(judged(&edge, id), ("not shown".to_owned(), "could not check".to_owned()));
