@@ -18,7 +18,8 @@
 #
 # What has to be trusted
 #  1. Python and these parts of its standard library: ast, csv, fractions, hashlib, json, tomllib, xml.etree.
-#  2. This file: how it reads a scenario, which hypotheses it asks for (`requirements`), and the argument beside each `@rule`.
+#  2. This file: how it reads a scenario, which hypotheses it asks for (`requirements`), and the argument beside each `@rule`,
+#     and beside the entries of `TEXT` and `NUMBERS`.
 #  3. The mathematics behind the list: that the theorems follow from these hypotheses.
 #  4. What a certificate marks as *given*: numbers that forwardstep drew at random. They are held against the bounds that the
 #     scenario states and nothing else, and a claim that rests on them reaches to the end of the run only.
@@ -42,12 +43,8 @@ UNCLAIMED = ("watched during the run", "not shown", "not covered by the paper")
 MOST_BYTES, MOST_DIGITS, MOST_NESTED = 64 << 20, 4000, 256
 MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS, MOST_EXPANDED = 200_000, 1_000_000, 100_000, 64, 16, 300, 6
 
-# A claim that is not shown; `place` is where in the certificate.
-class Rejected(Exception):
-    outcome = REJECTED
-    def __init__(self, words, place=""):
-        super().__init__(words)
-        self.place = place
+# A claim that is not shown: (words, where in the certificate).
+class Rejected(Exception): outcome = REJECTED
 
 def require(node, condition, words):
     if not condition: raise Rejected(words, node.place)
@@ -68,8 +65,7 @@ DECIMAL, RATIO = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?", re.A
 # A decimal as the rational number that it is.
 def decimal(text):
     plain = text.replace("_", "")
-    if len(plain) > MOST_DIGITS or not DECIMAL.fullmatch(plain):
-        raise ValueError(f"`{plain[:40]}` is not a finite decimal of moderate length")
+    if len(plain) > MOST_DIGITS or not DECIMAL.fullmatch(plain): raise ValueError(f"`{plain[:40]}` is no decimal of moderate length")
     return Fraction(plain)
 
 # A value of the certificate with its place. What has the wrong type is rejected there.
@@ -88,6 +84,11 @@ class Node(collections.namedtuple("Node", "value place")):
     def only(self, *keys):
         for key in self.typed(dict, "an object"): require(self, key in keys, f"has `{key}`, which means nothing here")
 
+    # All its fields.
+    def fields(self, *keys):
+        self.only(*keys)
+        return map(self.field, keys)
+
     def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
 
     def text(self): return self.typed(str, "a text")
@@ -97,19 +98,20 @@ class Node(collections.namedtuple("Node", "value place")):
     # A whole number, a decimal in quotes, or "p/q" in quotes.
     def number(self):
         text = str(self.typed((int, str), "a whole number, or a number in quotes"))
-        legible = len(text) <= MOST_DIGITS and (RATIO.fullmatch(text) or DECIMAL.fullmatch(text))
-        require(self, legible, "is no decimal and no p/q of moderate length")
+        legible = len(text) <= MOST_DIGITS and (RATIO.fullmatch(text) or DECIMAL.fullmatch(text)) and abs(Fraction(text)) < 10**300
+        require(self, legible, "is no decimal and no p/q of moderate length and size")
         return Fraction(text)
 
 # The document as a node. Numbers in it are whole or stand in quotes, so that none is rounded on the way.
 def read_certificate(text):
     def no(words): raise Rejected(words, "certificate")
 
+    def no_number(word): no(f"{word[:40]} stands without quotes: it would be rounded, or is not a number")
+
     try:
         return Node(json.loads(
             text, object_pairs_hook=lambda items: dict(items) if len(dict(items)) == len(items) else no("an object has a key twice"),
-            parse_float=lambda number: no(f"{number[:40]} stands without quotes: it would be rounded"),
-            parse_constant=lambda word: no(f"{word} is not a number"),
+            parse_float=no_number, parse_constant=no_number,
             parse_int=lambda digits: int(digits) if len(digits) <= 30 else no("a whole number is too long")), "certificate")
     except (RecursionError, ValueError) as error: no(f"is not JSON, or nested too deeply: {error}")
 
@@ -184,8 +186,8 @@ def total(x, y):
     return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
-    unbounded = infinite(x) or infinite(y)
-    return Fraction(0) if x == 0 or y == 0 else x * y if not unbounded else INF if (x > 0) == (y > 0) else -INF
+    if x == 0 or y == 0: return Fraction(0)
+    return x * y if not (infinite(x) or infinite(y)) else INF if (x > 0) == (y > 0) else -INF
 
 def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
@@ -252,11 +254,10 @@ def exp_at(x):
     for _ in range(halvings): value = multiply(value, value)
     return value
 
-# x = m 2^k with 1 ≤ m < 2; log m = 2 artanh((m − 1)/(m + 1)).
+# x = m 2^k with 1/2 < m < 2; log m = 2 artanh((m − 1)/(m + 1)).
 def log_at(x):
     k = x.numerator.bit_length() - x.denominator.bit_length()
     m = x / Fraction(2) ** k
-    k, m = (k - 1, 2 * m) if m < 1 else (k, m)
     return add(multiply((2, 2), odd_series((m - 1) / (m + 1), 1)), multiply((2 * k, 2 * k), odd_series(Fraction(1, 3), 1)))
 
 def sqrt_at(x):
@@ -270,8 +271,7 @@ def tanh_at(x): return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at
 def atan_at(x):
     if x < 0: return minus(atan_at(-x))
     if x > 1: return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(1 / x)))
-    root = sqrt_at(1 + x * x)
-    ends = [rounded(x / (1 + end), side) for end, side in zip(root, (True, False))]
+    ends = [rounded(x / (1 + end), side) for end, side in zip(sqrt_at(1 + x * x), (True, False))]
     return multiply((2, 2), (odd_series(ends[1], -1)[0], odd_series(ends[0], -1)[1]))
 
 def power(a, exponent):
@@ -365,8 +365,7 @@ def shaped(node, names, depth):
 
     def inner(part): return shaped(part, names, depth + 1)
 
-    if isinstance(node, ast.Name) and node.id in (*names, "pi", "e"):
-        return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
+    if type(node) is ast.Name and node.id in (*names, "pi", "e"): return (node.id,) if node.id in ("t", "pi", "e") else ("state", node.id)
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.UAdd, ast.USub)):
         return inner(node.operand) if isinstance(node.op, ast.UAdd) else ("f", "neg", inner(node.operand))
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow): return "^", inner(node.left), constant(inner(node.right))
@@ -399,12 +398,10 @@ def once(of):
 @once
 def has_variable(tree): return tree[0] in ("t", "state", "points") or any(map(has_variable, parts_of(tree)))
 
-COMBINED = {
-    "+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)), "hull": hull,
-    "min": lambda a, b: tuple(map(min, a, b)), "max": lambda a, b: tuple(map(max, a, b))}
+COMBINED = {"+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)), "hull": hull,
+            "min": lambda a, b: tuple(map(min, a, b)), "max": lambda a, b: tuple(map(max, a, b))}
 
-def convolved(p, q):
-    return [sum((p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)), Fraction(0)) for k in range(len(p) + len(q) - 1)]
+def convolved(p, q): return [sum(p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)) for k in range(len(p) + len(q) - 1)]
 
 # (P, Q) of a formula that is a quotient of polynomials in t, by coefficients from t⁰ on, with all its poles; else None.
 @once
@@ -413,8 +410,7 @@ def quotient(tree):
     if kind in ("number", "t"): return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
     if tree[:2] == ("f", "neg"): return quotient(("-", ZERO, tree[2]))
     parts = list(map(quotient, parts_of(tree)))
-    if None in parts or kind not in ("+", "-", "*", "/", "^") or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8):
-        return None
+    if None in parts or kind not in "+-*/^" or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8): return None
     first, last = parts[0], parts[-1]
     # Q²/(P Q) for the inverse of P/Q: no pole is lost.
     if kind == "/" or kind == "^" and tree[2] < 0: last = convolved(last[1], last[1]), convolved(*last)
@@ -512,8 +508,7 @@ def attempt(of, *arguments):
 
 def in_one_pass(tree, t):
     kind = tree[0]
-    if kind in ("number", "t", "pi", "e"):
-        return {"t": t, "pi": PI}.get(kind) or ((tree[1],) * 2 if kind == "number" else exp_at(Fraction(1)))
+    if kind in ("number", "t", "pi", "e"): return {"t": t, "pi": PI}.get(kind) or (exp_at(Fraction(1)) if kind == "e" else (tree[1],) * 2)
     if kind in ("f", "^"): return function(tree[1], enclose(tree[2], t)) if kind == "f" else power(enclose(tree[1], t), tree[2])
     if kind in ("state", "points"):
         return along_points(*tree[1:], t) if kind == "points" else t.get(tree[1], WHOLE) if isinstance(t, dict) else WHOLE
@@ -569,15 +564,14 @@ def derivative(tree):
     if kind in "+-": return plus(da, db if kind == "+" else negated(db))
     if kind == "*": return plus(times(da, b), times(a, db))
     if kind == "/":
-        first = ZERO if da == ZERO else ("/", da, b)
-        return plus(first, negated(times(a, times(db, ("^", b, Fraction(-2)))))) if has_variable(b) else first
+        rest = negated(times(a, times(db, ("^", b, Fraction(-2))))) if has_variable(b) else ZERO
+        return rest if da == ZERO else plus(("/", da, b), rest)
     if kind == "^":
         # No power below the first is made, whose slope would divide by what may be zero.
         return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
-    outer = {
-        "neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree, "log": ("/", ONE, a),
-        "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
-        "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))}
+    outer = {"neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree,
+             "log": ("/", ONE, a), "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
+             "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))}
     decided(kind == "f" and tree[1] in outer, "a derivative has kinks")
     return times(da, outer[tree[1]])
 
@@ -630,11 +624,11 @@ LAWS = {
     "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
     "position_only": (("point_mass",), "damping filter_per_s adaptation_gain"),
     "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
-    "task_space": (("planar_arm", "urdf"), "damping adaptation_gain task_gain kinematic_gain torque_share "
-                   "reference_gain_per_s attitude_gain"),
+    "task_space": (("planar_arm", "urdf"),
+                   "damping adaptation_gain task_gain kinematic_gain torque_share reference_gain_per_s attitude_gain"),
     "attitude": (("spacecraft",), "error_gain_per_s2 rate_gain_per_s filter_gain_per_s damping"),
-    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
-    "immersion": (("chain",), "gain_per_s adaptation_gain"),
+    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"),
+    "linearising": (("chain", "vector_chain"), "gain_per_s"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
     "adaptive_backstepping": (("strict_feedback", "pure_feedback"), "gains_per_s adaptation_gain"),
     "passivity_filter": (("spacecraft",), "error_gain_n_m filter_gain_per_s damping")}
 MADE_FOR, GAINS = ({law: of[k] for law, of in LAWS.items()} for k in (0, 1))
@@ -729,8 +723,7 @@ class Scenario:
         self.body = table(body, "reference", DESIRED if self.reference == "desired" else REFERENCE)
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking", "desired"), "reference dynamics")
         self.agents = []
-        for number, entry in enumerate(listed(file.get("agents"), "agents")):
-            self.populate(table(entry, "agents", AGENT), f"agents[{number}]")
+        for k, entry in enumerate(listed(file.get("agents"), "agents")): self.populate(table(entry, "agents", AGENT), f"agents[{k}]")
         self.leader, self.motion, self.names = None, None, [agent.name for agent in self.agents]
         if self.reference == "leader": self.lead(table(file.get("leader"), "leader", "name motion agent"))
         self.index = {name: k for k, name in enumerate(self.names)}
@@ -756,12 +749,11 @@ class Scenario:
 
     # The leader is an agent, or one vertex more.
     def lead(self, leader):
-        if "agent" in leader:
-            such(leader["agent"] in self.names, "there is no agent of the name of the leader")
-            self.leader = self.names.index(leader["agent"])
-        else:
-            self.leader, self.motion = len(self.names), self.trajectory(leader.get("motion"), "leader.motion")
+        if "agent" not in leader:
+            self.motion = self.trajectory(leader.get("motion"), "leader.motion")
             self.names.append(name_of(leader.get("name", "leader"), "leader.name"))
+        such(leader.get("agent", self.names[-1]) in self.names, "there is no agent of the name of the leader")
+        self.leader = self.names.index(leader.get("agent", self.names[-1]))
 
     # Roots, λ and the target of one agent: its own, else those of all. Who leads shares nothing with those that follow.
     def design(self, agent):
@@ -781,15 +773,13 @@ class Scenario:
 
     def trajectory(self, file, where):
         kind, body = choice(file, where)
-        if kind == "formulas":
-            return [motion_of(entry, where) for entry in listed(body, where)]
+        if kind == "formulas": return [motion_of(entry, where) for entry in listed(body, where)]
         if kind == "sinusoids": return [self.waves(table(entry, where), where) for entry in listed(body, where)]
         if kind == "points":
             times = [exact(t, f"{where}.times_s") for t in listed(table(body, where).get("times_s"), where)]
             rows = [[exact(x, f"{where}.positions") for x in listed(row, where)] for row in listed(body.get("positions"), where)]
         elif kind == "csv":
             table_ = self.csv(table(body, where).get("file"))
-            such(table_ and "t_s" in table_[0], f"{where}: the table lacks rows, or the column `t_s`")
             times = [decimal(row["t_s"]) for row in table_]
             rows = [[decimal(cell) for key, cell in row.items() if key != "t_s"] for row in table_]
         known(kind, ("points", "csv"), "motions")
@@ -818,16 +808,12 @@ class Scenario:
     def csv(self, name):
         rows = [row for row in csv.reader(io.StringIO(self.text_of(name))) if row and not row[0].lstrip().startswith("#")]
         such(rows and all(len(row) <= len(rows[0]) for row in rows), f"the table `{name}` has rows that are longer than its first")
-        head = [key.strip() for key in rows[0]]
-        return [dict(zip(head, (cell.strip() for cell in row + [""] * (len(head) - len(row))))) for row in rows[1:]]
+        return [dict(zip(map(str.strip, rows[0]), map(str.strip, row + [""] * (len(rows[0]) - len(row))))) for row in rows[1:]]
 
     def read_network(self):
-        self.graphs, self.dwell, self.switching, self.coupling = [[]], [], "once", None
-        network = self.file.get("network")
-        if network is None:
-            such(self.reference == "tracking" or self.body.get("follows_target", False), "`network` is missing")
-            return
-        network = table(network, "network", "weight delay link_delays coupling edges switching phases")
+        such("network" in self.file or self.reference == "tracking" or self.body.get("follows_target", False), "`network` is missing")
+        self.coupling, network = None, self.file.get("network", {"edges": []})
+        table(network, "network", "weight delay link_delays coupling edges switching phases")
         self.weight, self.delay = self.read_weight(network.get("weight", 1)), self.read_delay(network.get("delay", {"constant_s": 0}))
         self.links = {(link.source, link.to): link.delay for link in map(self.edge, network.get("link_delays", []))}
         if "coupling" in network:
@@ -836,8 +822,8 @@ class Scenario:
         such(("edges" in network) != ("phases" in network), "the network must have either `edges` or `phases`")
         phases = listed(network["phases"], "phases") if "phases" in network else [{"edges": network["edges"]}]
         self.graphs = [self.edges(table(phase, "phases", "dwell_s edges").get("edges")) for phase in phases]
-        if "phases" in network:
-            self.switching, body = chosen(network.get("switching", "repeat"), "switching", ("repeat", "once", "log", "random"), "switching")
+        turns = network.get("switching", "repeat") if "phases" in network else "once"
+        self.switching, body = chosen(turns, "switching", ("repeat", "once", "log", "random"), "switching")
         if self.switching == "random":
             self.dwell = [positive(x, "dwell_s") for x in pair(table(body, "switching").get("dwell_s"))]
             such(self.dwell[0] <= self.dwell[1], "`dwell_s` must rise")
@@ -922,12 +908,11 @@ class Scenario:
             push = table(push, "external_wrenches", "on from_s for_s by")
             begins = not_negative(push.get("from_s", 0), "from_s")
             ends = begins + positive(push["for_s"], "for_s") if "for_s" in push else INF
+            acting = [(max(begins, first), min(ends, last), trees) for first, last, trees in self.courses(push.get("by"))]
             for name in listed(push.get("on"), "on"):
                 meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
                 such(meant, f"there is no agent `{name}`")
-                for agent in meant:
-                    acting = ((max(begins, first), min(ends, last), trees) for first, last, trees in self.courses(push.get("by")))
-                    agent.pushes += [(last, trees) for first, last, trees in acting if first < last]
+                for agent in meant: agent.pushes += [(last, trees) for first, last, trees in acting if first < last]
 
     # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, but for those of hands.
     def courses(self, by):
@@ -938,9 +923,8 @@ class Scenario:
             form, rows = choice(file, "by") if not isinstance(file, list) else ("formulas", file)
             known(form, ("rows", "csv", "formulas"), "courses")
             times, hand = [Fraction(0), INF], kind.startswith("virtual_spring")
-            if form != "formulas":
-                times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")] if form == "rows" else [
-                    decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
+            if form == "rows": times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")]
+            if form == "csv": times = [decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
             yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" and not hand else []
 
     def used(self): return [edge for graph in self.graphs for edge in graph]
@@ -949,8 +933,8 @@ class Scenario:
 
     # Whether one graph, with its weights and delays, or whatever these are, is in force in all phases, or in some.
     def fixed(self, phases=None, delays=True):
-        graphs = [{(edge.source, edge.to, edge.weight, delays and edge.delay[2]) for edge in graph} for graph in self.graphs]
-        graphs = graphs if phases is None else [graphs[phase] for phase in phases]
+        chosen_ = [self.graphs[phase] for phase in phases or range(len(self.graphs))]
+        graphs = [{(edge.source, edge.to, edge.weight, delays and edge.delay[2]) for edge in graph} for graph in chosen_]
         return all(graph == graphs[0] for graph in graphs)
 
     # The phases that are in force again and again, or for ever.
@@ -1014,13 +998,12 @@ def extension(agent):
 def theorem(scenario):
     tracking, agents = scenario.reference == "tracking", scenario.agents
     if scenario.reference == "desired": return "desired-dynamics"
-    if scenario.reference == "leader":
-        return ({"continuous": "theorem-8" + scenario.over()} | LED).get(scenario.body.get("design"), "no design")
+    if scenario.reference == "leader": return (LED | {"continuous": "theorem-8" + scenario.over()}).get(scenario.body.get("design"), "none")
     if len(kinds := {treated(agent) for agent in agents}) > 1: return "targets" if tracking else "mixture"
     tip = "tip-velocity" if any("tip_velocity" in agent.gains for agent in agents) else "theorem-6" + max(map(extension, agents))
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
-             "thrust by_acceleration": "thrust-by-acceleration", "task space": tip, "attitude": "theorem-7",
-             "passivity filter": "passivity-filter", "chain": f"chains-{'track' if tracking else 'agree'}",
+             "thrust by_acceleration": "thrust-by-acceleration", "attitude": "theorem-7", "passivity filter": "passivity-filter",
+             "task space": tip, "chain": "chains-track" if tracking else "chains-agree",
              "position only": "position-only-tracks" if tracking else "remark-7"}
     if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
@@ -1040,41 +1023,36 @@ def requirements(scenario):
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
     designs = [{design_of(agent) for agent in flying if agent.robot == robot} for robot in ("vehicle", "rotorcraft")]
     asked = [
-        (agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"),
-        (reference in ("consensus", "pure_integral"), "real-roots"),
-        (reference == "consensus", "common-order" if len({len(agent.roots) for agent in agents}) == 1 else "own-orders"),
-        (reference == "pure_integral" or leading and not turns, "fixed-graph"), (reference == "backstepping", "measured-derivative"),
-        (agreeing and scenario.coupling is not None, "coupling-sector"),
-        (agreeing and scenario.exchange() == "position_velocity", "common-first-root"),
-        (agreeing and any(agent.manipulability > 0 for agent in agents), "manipulability"),
+        (agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"), (flying, "nonzero-thrust"),
+        (reference in ("consensus", "pure_integral"), "real-roots"), (reference == "pure_integral" or leading and not turns, "fixed-graph"),
+        (reference == "consensus", "common-order" if len({len(a.roots) for a in agents}) == 1 else "own-orders"),
+        (reference == "backstepping", "measured-derivative"), (agreeing and scenario.coupling is not None, "coupling-sector"),
+        (agreeing and scenario.exchange() == "position_velocity", "common-first-root"), (any(a.pushes for a in agents), "pushes-end"),
+        (agreeing and any(a.manipulability > 0 for a in agents), "manipulability"), ({"continuous"} in designs, "known-masses"),
         (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
         (leading, "leader-in-every-graph dwell-time" if turns else "leader-reaches-all"),
-        (leading and (late or design not in (*FIRST_ORDER, "swarm")), "constant-weights"),
+        (leading and (late or design not in (*FIRST_ORDER, "swarm")), "constant-weights"), (lagrangian, "positive-gains"),
         (rooted(scenario) or leading and design != "swarm", "hurwitz"), (design == "swarm", "printed-design mutual-weights swarm-coupling"),
-        (reference != "tracking" and scenario.varying(), "bounded-weights"), (any(agent.pushes for agent in agents), "pushes-end"),
-        (len(kinds) > 1 and not all(agent.tracks for agent in agents), "one-kind"),
+        (reference != "tracking" and scenario.varying(), "bounded-weights"), (any("rotors" in a.body for a in flying), "every-wrench"),
+        (len(kinds) > 1 and not all(a.tracks for a in agents), "one-kind"), ("thrust by_acceleration" in kinds, "unbiased-acceleration"),
         (True, " ".join(f"{a.law.replace('_', '-')}-gains" for a in agents if treated(a) == a.law.replace("_", " "))),
-        ({"continuous"} in designs, "known-masses"), (any(each - {"continuous"} for each in designs), "thrust-gains"),
-        (flying, "nonzero-thrust"), (any(agent.robot == "rotorcraft" for agent in agents), "angular-velocity"),
-        (any("rotors" in agent.body for agent in flying), "every-wrench"), ("thrust by_acceleration" in kinds, "unbiased-acceleration"),
+        (any(each - {"continuous"} for each in designs), "thrust-gains"), (lagrangian or tips, "uniform-inertia"),
+        (any(a.robot == "rotorcraft" for a in agents), "angular-velocity"), (frictions(scenario), "smooth-friction"),
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
-        (any(agent.body.get("parameters") for agent in adaptive), "bounded-regressors"),
-        (any(agent.pushes and agent.robot.endswith("feedback") for agent in chains), "matched-disturbance"), (lagrangian, "positive-gains"),
-        (lagrangian or tips, "uniform-inertia"), (any(not agent.tracks for agent in lagrangian) or tips, "bounded-dynamics"),
+        (any(a.body.get("parameters") for a in adaptive), "bounded-regressors"), (scenario.polynomial, "desired-dynamics"),
+        (any(a.pushes and a.robot.endswith("feedback") for a in chains), "matched-disturbance"), (control is not None, "continuous-time"),
+        (any(not a.tracks for a in lagrangian) or tips, "bounded-dynamics"),
         (any("bounds" in a.settings() for a in agents if a.law != "task_space"), "parameters-within-bounds"),
-        (frictions(scenario), "smooth-friction"), (scenario.polynomial, "desired-dynamics"), (control is not None, "continuous-time"),
         (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
-        (control is not None and "message_timeout_s" in control, "messages-in-time"),
-    ]
+        (control is not None and "message_timeout_s" in control, "messages-in-time")]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
-    for agent in agents:
-        tip, filtered, posed = agent.law == "task_space", agent.law == "passivity_filter", extension(agent) == "-pose"
-        turns, moved = agent.robot == "spacecraft", not filtered or not still(agent)
-        own = [(tip, "regular-jacobian"), (turns and moved, "known-momentum"), (tip and agent.robot == "planar_arm", "target-within-reach"),
-               (agent.target, "bounded-target"), (agent.target and (turns or posed), "nonzero-quaternion"), (posed, "start-attitude"),
-               (filtered, "target-at-rest"),
-               (tip and agent.robot == "urdf", "certain-regressor"), (tip and "bounds" in agent.gains, "lengths-within-bounds")]
-        found |= {(each, agent.name) for condition, each in own if condition}
+    for a in agents:
+        tip, filtered, posed, turns = a.law == "task_space", a.law == "passivity_filter", extension(a) == "-pose", a.robot == "spacecraft"
+        own = [(a.target, "bounded-target"), (a.target and (turns or posed), "nonzero-quaternion"), (posed, "start-attitude"),
+               (turns and not (filtered and still(a)), "known-momentum"), (filtered, "target-at-rest"), (tip, "regular-jacobian"),
+               (tip and a.robot == "planar_arm", "target-within-reach"), (tip and a.robot == "urdf", "certain-regressor"),
+               (tip and "bounds" in a.gains, "lengths-within-bounds")]
+        found |= {(each, a.name) for condition, each in own if condition}
     return found
 
 # Whether each entry of a target is a constant.
@@ -1095,8 +1073,8 @@ SEVERAL = ("uniform-inertia", "hurwitz", "desired-dynamics")
 # Hypotheses that only a run can show, or that the paper does not cover whenever they are asked for: no claim is right.
 NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", "angular-velocity", "every-wrench",
          "bounded-regressors", "regular-jacobian", "continuous-time", "exact-measurements")
-# --- Rules: each shows some kinds of proof of some hypotheses. Their parameters are the fields of the proof. A rule may give words,
-# --- and whether what is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
+# --- Rules: each shows some kinds of proof of some hypotheses. Their parameters are the fields of the proof. A rule gives whether what
+# --- is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
              "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign")
@@ -1116,24 +1094,22 @@ class Claim:
 
     # (outcome, words).
     def judge(self):
-        if self.answer in UNCLAIMED:
-            require(self.entry, self.proof is None, "has a proof, and claims nothing")
-            return UNCHECKED, f"nothing is claimed: {self.answer}"
+        require(self.entry, self.proof is None or self.answer not in UNCLAIMED, "has a proof, and claims nothing")
+        decided(self.answer not in UNCLAIMED, f"nothing is claimed: {self.answer}")
         require(self.entry.field("answer"), self.id not in NEVER or self.answer == VIOLATED, "is a claim that nothing before a run shows")
-        if self.proof is None or self.id not in {each for each, _ in RULES}:
-            return UNCHECKED, "there is no proof" if self.proof is None else "no proof of it is known here"
-        kind = self.proof.field("kind").text()
+        decided(self.proof is not None, "there is no proof")
+        decided(self.id in {each for each, _ in RULES}, "no proof of it is known here")
+        self.kind = kind = self.proof.field("kind").text()
         check = RULES.get((self.id, kind))
         require(self.proof.field("kind"), check is not None, f"is no proof of `{self.id}`")
         fields = check.__code__.co_varnames[1:check.__code__.co_argcount]
         self.proof.only("kind", *fields)
         needed_ = len(fields) - len(check.__defaults__ or ())
-        try: found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
-        except Undecided as reason: return UNCHECKED, str(reason)
-        words, always = found if isinstance(found, tuple) else (found or kind, True)
-        shown = (VIOLATED,) if kind in WITNESSES else (HOLDS, ON_RUN) if always else (ON_RUN,)
+        found = check(self, *map(self.proof.field, fields[:needed_]), *map(self.proof.optional, fields[needed_:]))
+        shown = (VIOLATED,) if kind in WITNESSES else (HOLDS, ON_RUN) if found in (None, True) else (ON_RUN,)
         require(self.entry.field("answer"), self.answer in shown, f"is more than the proof shows: {' or '.join(shown)}")
-        return ACCEPTED, words
+        told = [f"{key} {str(self.proof.value[key])[:40]}" for key in fields if isinstance(self.proof.value.get(key), (int, str))]
+        return ACCEPTED, ", ".join([kind, *told])
 
 # Follows an arborescence: triples [from, to, phase] of edges that exist, each from who has been reached; all are.
 def reach(scenario, node, root, allowed):
@@ -1151,11 +1127,11 @@ def reach(scenario, node, root, allowed):
 def tiled(claim, windows, sequence):
     ends = [0]
     for window in windows.each():
-        window.only("phases", "root", "arborescence")
-        phases, at = [phase.count() - 1 for phase in window.field("phases").each()], ends[-1]
-        require(window.field("phases"), phases == sequence[at:at + len(phases)], "are not the phases that follow")
+        stated, root, arborescence = window.fields("phases", "root", "arborescence")
+        phases, at = [phase.count() - 1 for phase in stated.each()], ends[-1]
+        require(stated, phases == sequence[at:at + len(phases)], "are not the phases that follow")
         # No edge leads to a leader, so that a root from which everybody is reached is the leader where there is one.
-        reach(claim.scenario, window.field("arborescence"), window.field("root"), phases)
+        reach(claim.scenario, arborescence, root, phases)
         ends.append(at + len(phases))
     require(windows, len(ends) > 1, "must be some")
     return ends
@@ -1164,23 +1140,21 @@ def tiled(claim, windows, sequence):
 # its own, the order does not matter.
 @rule("spanning-tree leader-reaches-all leader-in-every-graph", "windows every-phase")
 def tiling(claim, windows):
-    scenario, phases, single = claim.scenario, claim.scenario.for_ever(), claim.proof.field("kind").text() == "every-phase"
-    drawn_ = scenario.switching == "random" and len(scenario.graphs) > 1 or claim.id == "leader-in-every-graph"
-    require(claim.proof, single or not drawn_, "is of no drawn schedule")
-    covered = sum(len(window.field("phases").each()) for window in windows.each())
-    whole = covered % len(phases) == 0 and covered <= MOST_CELLS
-    require(windows, whole, "must be one for each phase" if single else "must cover whole periods")
-    ends = tiled(claim, windows, phases * (covered // len(phases)))
-    require(windows, not single or ends == list(range(len(phases) + 1)), "must be one for each phase")
-    return f"{len(windows.each())} windows tile {covered} phases, each with a spanning tree"
+    scenario, phases, single = claim.scenario, claim.scenario.for_ever(), claim.kind == "every-phase"
+    ordered = (scenario.switching != "random" or len(scenario.graphs) == 1) and claim.id != "leader-in-every-graph"
+    require(claim.proof, single or ordered, "is of no drawn schedule")
+    lengths = [len(window.field("phases").each()) for window in windows.each()]
+    require(windows, not single or lengths == [1] * len(phases), "must be one for each phase")
+    require(windows, sum(lengths) % len(phases) == 0 and sum(lengths) <= MOST_CELLS, "must cover whole periods")
+    tiled(claim, windows, phases * (sum(lengths) // len(phases)))
 
 # (phase, from when, until when) of a drawn sequence that is given.
 def drawn(scenario, given):
     # Drawn in floating point: a dwell may leave its bounds by a part of 10^9.
     (low, high), room, found, start = scenario.dwell, Fraction(1, 10**9), [], Fraction(0)
     for entry in given.each():
-        entry.only("phase", "until_s")
-        found.append((entry.field("phase").count(), start, start := entry.field("until_s").number()))
+        phase, until_s = entry.fields("phase", "until_s")
+        found.append((phase.count(), start, start := until_s.number()))
         require(entry, 1 <= found[-1][0] <= len(scenario.graphs), "is no phase")
         require(entry, low * (1 - room) <= start - found[-1][1] <= high * (1 + room), "lasts shorter or longer than the scenario allows")
     require(given, start >= scenario.end_s, "ends before the run")
@@ -1189,49 +1163,40 @@ def drawn(scenario, given):
 # Such a sequence, or that of a log, tiled by windows up to the end of the run but for a rest that is no longer than is stated.
 @rule("spanning-tree leader-reaches-all", "drawn logged")
 def along(claim, windows, longest_s, given=None):
-    scenario, kind = claim.scenario, claim.proof.field("kind").text()
+    scenario, kind = claim.scenario, claim.kind
     require(claim.proof, (scenario.switching, given is None) == (("random", False) if kind == "drawn" else ("log", True)), f"is not {kind}")
     sequence = drawn(scenario, given) if given else scenario.logged
     times, ends = [Fraction(0), *(end for *_, end in sequence)], tiled(claim, windows, [int(phase) - 1 for phase, *_ in sequence])
     lengths = [times[b] - times[a] for a, b in zip(ends, ends[1:])] + [scenario.end_s - times[ends[-1]]]
     require(longest_s, max(lengths) <= longest_s.number(), "is exceeded by a window, or by what is left after the last")
-    return f"{len(ends) - 1} windows of at most {said(longest_s.number())} s tile the sequence that is {kind}", False
+    return False
+
+# A group of agents that hear nobody outside of it in some phases.
+def closed(scenario, node, phases):
+    group = {scenario.index.get(name.text()) for name in node.each()}
+    require(node, group and None not in group, "must name agents")
+    for phase, (source, to) in ((phase, ends) for phase in phases for ends in scenario.pairs[phase]):
+        words = f"is not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}"
+        require(node, to not in group or source in group, words)
+    return group
 
 # Two disjoint groups, or one without the leader, that hear no agent outside themselves in what recurs: no tree, for ever.
 @rule("spanning-tree leader-reaches-all", "cut")
 def cut(claim, groups):
-    scenario, sets = claim.scenario, [{claim.scenario.index.get(name.text()) for name in group.each()} for group in groups.each()]
-    require(groups, sets and all(sets) and None not in set().union(*sets), "must name agents")
-    led, apart = claim.id == "leader-reaches-all", sum(map(len, sets)) == len(set().union(*sets))
-    fits = len(sets) == 1 and scenario.leader not in sets[0] if led else len(sets) >= 2 and apart
-    require(groups, fits, f"must be {'one group without the leader' if led else 'two or more that are disjoint'}")
-    for group in sets: closed(scenario, groups, group, scenario.for_ever())
-
-# A group hears no agent outside itself in some phases.
-def closed(scenario, node, group, phases):
-    for phase, (source, to) in ((phase, ends) for phase in phases for ends in scenario.pairs[phase]):
-        words = f"is not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}"
-        require(node, to not in group or source in group, words)
+    sets, leader = [closed(claim.scenario, group, claim.scenario.for_ever()) for group in groups.each()], claim.scenario.leader
+    if claim.id == "leader-reaches-all": require(groups, len(sets) == 1 and leader not in sets[0], "must be one group without the leader")
+    else: require(groups, len(sets) > 1 and sum(map(len, sets)) == len(set().union(*sets)), "must be two or more that are disjoint")
 
 # In this phase, which recurs, a group without the leader does not.
 @rule("leader-in-every-graph", "unheard")
 def unheard(claim, phase, group):
-    found = {claim.scenario.index.get(name.text()) for name in group.each()}
     require(phase, phase.count() - 1 in claim.scenario.for_ever(), "does not recur")
-    require(group, found and not found & {None, claim.scenario.leader}, "must name agents, and not the leader")
-    closed(claim.scenario, group, found, [phase.count() - 1])
-
-# Of (3) and (23) delays may jump with the phases.
-@rule("dwell-time fixed-graph", "never-switches one-graph")
-def fixed_graph(claim):
-    integral = claim.scenario.reference == "pure_integral" and claim.id != "dwell-time"
-    require(claim.proof, claim.scenario.fixed(delays=not integral), "is not so: the graphs differ")
-    require(claim.proof, not (integral and claim.scenario.varying()), "is not so: a weight varies")
+    require(group, claim.scenario.leader not in closed(claim.scenario, group, [phase.count() - 1]), "must name agents, and not the leader")
 
 @rule("dwell-time", "shortest-phase")
 def shortest_phase(claim, shortest_s):
     require(shortest_s, 0 < shortest_s.number() <= min(claim.scenario.dwell, default=0), "is not below the shortest phase")
-    return f"phases last {said(shortest_s.number())} s at least", claim.scenario.switching != "log"
+    return claim.scenario.switching != "log"
 
 # Those whose M, C and g the proofs use.
 def robots(scenario): return [agent for agent in scenario.agents if agent.law in ("adaptive", "known", "task_space")]
@@ -1264,11 +1229,9 @@ def links(agent, root, locked):
         for joint in (joint for joint in joints if joint.find("parent").get("link") == name):
             kind, child = joint.get("type"), joint.find("child").get("link")
             such(kind in (*MOVING, "fixed"), "a joint is of a kind that no robot here has")
-            if kind == "fixed" or joint.get("name") in locked: visit(child, own, turned)
-            else:
-                rubs = sum(decimal(of.get("friction", "0")) for of in joint.findall("dynamics"))
-                found.append((kind == "prismatic", turned, rubs, []))
-                visit(child, found[-1][-1], turned or kind != "prismatic")
+            moves, rubs = kind != "fixed" and joint.get("name") not in locked, (of.get("friction", "0") for of in joint.findall("dynamics"))
+            if moves: found.append((kind == "prismatic", turned, sum(map(decimal, rubs)), []))
+            visit(child, found[-1][-1] if moves else own, turned or moves and kind != "prismatic")
 
     bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
     for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], False)
@@ -1360,8 +1323,7 @@ def lengths(scenario, agent):
 def estimated(scenario, agent):
     kind, body = choice(agent.gains.get("kinematic_start", {"scaled": Fraction(6, 5)}), "kinematic_start")
     if kind not in ("zero", "true", "scaled"): return [(exact(x, kind),) * 2 for x in listed(body, kind)]
-    factor = exact(body, kind) if kind == "scaled" else Fraction(kind == "true")
-    return [multiply((factor,) * 2, x) for x in lengths(scenario, agent)]
+    return [multiply((exact(body, kind) if kind == "scaled" else Fraction(kind == "true"),) * 2, x) for x in lengths(scenario, agent)]
 
 # Columns of the estimated Jacobian of a tip at the start: its place in the base, and of a pose how the link turns.
 def jacobian(scenario, agent):
@@ -1414,6 +1376,8 @@ def bounds_hold(agent):
     decided(plain, "the parameters of this robot are not computed here")
     (lower,), (upper,) = body["lower"], body["upper"]
     return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
+
+def parameters_hold(scenario): return all(bounds_hold(agent) for agent in scenario.agents if agent.law != "task_space")
 
 # Lengths that are uncertain within the bounds that their estimates keep.
 def lengths_hold(scenario, agent):
@@ -1479,7 +1443,7 @@ def no_value(claim, agent, state):
     for term in terms(of.body):
         try: enclose(term, found)
         except Undecided as reason:
-            if isinstance(reason, Undefined): return f"{agent.text()} has a term without a value there"
+            if isinstance(reason, Undefined): return
     raise Undecided("whether a term has a value in this state is not decided here")
 
 # States by their letters; of several axes those of each.
@@ -1496,31 +1460,40 @@ def rests(agent):
     entries = [exact(x, "inertia_kg_m2") for row in rows for x in (row if isinstance(row, list) else [row])]
     return still(agent) or entries in ([entries[0]] * 3, [entries[0] if k % 4 == 0 else 0 for k in range(9)])
 
-TEXT = {
-    "unbiased-acceleration": lambda scenario, _: not any(any(agent.settings().get("bias_m_s2", [])) for agent in scenario.agents),
-    "uniform-inertia": lambda scenario, _: all([definite_inertia(scenario, agent) for agent in robots(scenario)]),
-    "bounded-dynamics": lambda scenario, _: robots(scenario) and all(unturned(scenario, agent) for agent in robots(scenario)),
-    "defined-terms": lambda scenario, _: all(everywhere(term) for a in scenario.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
-    # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
-    "own-orders": lambda scenario, _: all(agent.roots for agent in scenario.agents),
-    "mutual-weights": lambda scenario, _: all(scenario.mutual(graph) for graph in scenario.graphs),
-    "constant-weights": lambda scenario, _: not scenario.varying(), "applied-torque": lambda scenario, _: not scenario.limited(),
-    "no-delay": lambda scenario, _: all(rule_bound(edge.delay) == 0 for edge in scenario.used()),
-    # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
-    "shared-design": lambda scenario, _: scenario.reference == "leader", "desired-design": lambda scenario, _: scenario.desired,
-    "known-masses": lambda scenario, _: all(design_of(a) == "continuous" for a in scenario.agents if a.law == "thrust"),
-    "known-momentum": lambda scenario, own: not any(a.pushes for a in own), "set-valued-sign": lambda scenario, _: set_valued(scenario),
-    "smooth-friction": lambda scenario, _: frictions(scenario) <= {"smooth"}, "target-at-rest": lambda scenario, own: all(map(rests, own)),
-    "parameters-within-bounds": lambda scenario, _: all(bounds_hold(a) for a in scenario.agents if a.law != "task_space"),
-    "lengths-within-bounds": lambda scenario, own: all(lengths_hold(scenario, agent) for agent in own),
-    "certain-regressor": lambda scenario, own: all(certain(scenario, agent) for agent in own),
-}
+def all_constant(scenario):
+    edges = [edge for phase in scenario.recurring() for edge in scenario.graphs[phase]]
+    same = lambda kind, body: kind == "constant_s" or kind == "piecewise_constant" and len({*body["values_s"]}) == 1
+    return scenario.fixed(scenario.recurring()) and all(not isinstance(edge.weight, str) and same(*edge.delay[:2]) for edge in edges)
 
-@rule(" ".join(TEXT), "text")
-@rule("parameters-within-bounds lengths-within-bounds", "outside")
-def by_text(claim):
-    so, stated = bool(TEXT[claim.id](claim.scenario, claim.own)), claim.proof.field("kind").text() == "text"
-    require(claim.proof, so == stated, "is not so by the text")
+# What follows from the text alone, by (id, kind): from the scenario, and the agents that the claim names.
+TEXT = {(each, "text"): so for each, so in {
+    "unbiased-acceleration": lambda s, _: not any(any(agent.settings().get("bias_m_s2", [])) for agent in s.agents),
+    "uniform-inertia": lambda s, _: all([definite_inertia(s, agent) for agent in robots(s)]),
+    "bounded-dynamics": lambda s, _: robots(s) and all(unturned(s, agent) for agent in robots(s)),
+    "defined-terms": lambda s, _: all(everywhere(term) for a in s.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
+    # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
+    "own-orders": lambda s, _: all(a.roots for a in s.agents), "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs)),
+    "constant-weights": lambda s, _: not s.varying(), "no-delay": lambda s, _: all(rule_bound(edge.delay) == 0 for edge in s.used()),
+    # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
+    "shared-design": lambda s, _: s.reference == "leader", "known-momentum": lambda _, own: not any(agent.pushes for agent in own),
+    "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
+    "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired, "set-valued-sign": lambda s, _: set_valued(s),
+    "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "target-at-rest": lambda _, own: all(map(rests, own)),
+    "parameters-within-bounds": lambda s, _: parameters_hold(s), "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
+    "lengths-within-bounds": lambda s, own: all(lengths_hold(s, agent) for agent in own)}.items()} | {
+    ("lengths-within-bounds", "outside"): lambda s, own: not all(lengths_hold(s, agent) for agent in own),
+    ("parameters-within-bounds", "outside"): lambda s, _: not parameters_hold(s), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
+    # Of (3) and (23) delays may jump with the phases.
+    ("fixed-graph", "one-graph"): lambda s, _: s.fixed(delays=False) and not s.varying() if s.reference == "pure_integral" else s.fixed(),
+    ("common-first-root", "constant"): lambda s, _: all_constant(s),
+    ("input-factor", "factor-away"): lambda s, _: all(max(low, -high) >= floor for _, (low, high), floor in factors(s)),
+    ("start-attitude", "half-turn"): lambda s, own: scalar_part(s, own)[1] <= 0,
+    # Every entry comes to zero as t grows, and the norm with it.
+    ("nonzero-quaternion", "fades"): lambda _, own: all(limit(tree) == (0, 0) for tree in quaternion(own))}
+
+def by_text(claim): require(claim.proof, TEXT[claim.id, claim.kind](claim.scenario, claim.own), "is not so by the text")
+
+RULES |= dict.fromkeys(TEXT, by_text)
 
 # The pieces of time that `range` and `cells` name: [0, ∞), or as many of a period of the formula, of the run, or until a time
 # from which on one more takes all that is left.
@@ -1529,11 +1502,9 @@ def pieces(node, tree, end_s):
     require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
     if kind == "for-ever": return [FOR_EVER]
     if kind == "period": unit, length = period(tree)
-    elif kind == "tail":
-        length = node.field("until_s").number()
-        require(node.field("until_s"), length > 0, "must be positive")
+    if kind == "tail": length = node.field("until_s").number()
     cells = node.field("cells").count()
-    require(node.field("cells"), 0 < cells <= MOST_CELLS, "must be some")
+    require(node.field("cells"), 0 < cells <= MOST_CELLS and length > 0, "must be some, up to a time that is positive")
     return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
 
 # Checks that a formula keeps within what is stated, piece by piece; (low, high).
@@ -1557,10 +1528,10 @@ def straight(tree, piece):
 def lasts(node): return node.field("range").text() != "run"
 
 # Enclosures of formulas, each named by an edge: {text: (low, high, whether for ever and uniformly continuous)}.
-def formulas(claim, node, text_of):
+def formulas(claim, node):
     found = {}
     for entry in node.each():
-        text = text_of(claim.scenario.edge_at(entry.field("edge")))
+        text = followed(claim, entry.field("edge"))
         if text is None: continue  # What is constant, though by a formula, needs no enclosure.
         tree = formula(text)
         within = enclosed(entry, tree, claim.scenario.end_s)
@@ -1571,8 +1542,11 @@ def formulas(claim, node, text_of):
         found[text] = *within, uniform
     return found
 
-# The formula that the delay of an edge follows, as a text.
-def formula_of(edge): return edge.delay[1] if edge.delay[0] == "formula_s" else None
+# The formula that the weight or delay of an edge follows, as a text; else None.
+def followed(claim, node):
+    edge = claim.scenario.edge_at(node)
+    if claim.id == "bounded-weights": return edge.weight if isinstance(edge.weight, str) else None
+    return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
 def rule_bound(delay):
@@ -1611,10 +1585,10 @@ def logged(scenario, edge):
 # A rule bounds its delay for ever, an enclosure a formula; logs and drawn packets do up to the end of the run.
 @rule("bounded-delays", "delays")
 def delays(claim, bound_s, enclosures, given):
-    scenario, always, largest, ages, shown = claim.scenario, True, Fraction(0), {}, formulas(claim, enclosures, formula_of)
+    scenario, always, largest, ages, shown = claim.scenario, True, Fraction(0), {}, formulas(claim, enclosures)
     for entry in given.each():
-        entry.only("from", "to", "worst_s")
-        ages[entry.field("from").text(), entry.field("to").text()] = entry.field("worst_s")
+        source, to, worst_s = entry.fields("from", "to", "worst_s")
+        ages[source.text(), to.text()] = worst_s
     for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used()}.values():
         (kind, body, _), worst = edge.delay, rule_bound(edge.delay)
         if kind == "formula_s":
@@ -1628,7 +1602,7 @@ def delays(claim, bound_s, enclosures, given):
             require(ages[link], worst >= not_negative(body.get("latency_s"), "latency_s"), "is below the latency")
         largest = max(largest, worst)
     require(bound_s, largest <= bound_s.number(), f"is exceeded: a delay may reach {said(largest)} s")
-    return f"no delay exceeds {said(bound_s.number())} s", always
+    return always
 
 # Heard at samples, a message is up to a period older than its delay.
 @rule("messages-in-time", "ages")
@@ -1641,35 +1615,25 @@ def in_time(claim, bound_s):
 
 @rule("bounded-weights", "weights")
 def weights(claim, enclosures):
-    shown = formulas(claim, enclosures, lambda edge: edge.weight if isinstance(edge.weight, str) else None)
-    for text in claim.scenario.varying():
-        require(enclosures, text in shown and shown[text][0] > 0, f"lacks `{text}`, or lets it come to zero")
-    words = (f"{text} keeps within [{said(low)}, {said(high)}]" for text, (low, high, _) in shown.items())
-    return "; ".join(words), all(shown[text][2] for text in claim.scenario.varying())
-
-# The formula that the weight or delay of an edge follows.
-def followed(claim, node):
-    edge = claim.scenario.edge_at(node)
-    text = edge.weight if claim.id == "bounded-weights" else formula_of(edge)
-    require(node, isinstance(text, str), "has no formula")
-    return formula(text)
+    shown = formulas(claim, enclosures)
+    for text in claim.scenario.varying(): require(enclosures, text in shown and shown[text][0] > 0, f"lacks `{text}`, or lets it vanish")
+    return all(shown[text][2] for text in claim.scenario.varying())
 
 # A time at which a weight is not positive, or a delay is negative.
 @rule("bounded-weights bounded-delays", "below")
 def below(claim, t_s, edge):
     require(t_s, t_s.number() >= 0, "is before the start")
-    high = enclose(followed(claim, edge), (t_s.number(),) * 2)[1]
+    high = enclose(formula(followed(claim, edge)), (t_s.number(),) * 2)[1]
     require(t_s, high < 0 or (high == 0 and claim.id == "bounded-weights"), "is no such time")
-    return f"{said(high)} at t = {said(t_s.number())} s"
 
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    tree = followed(claim, edge)
-    if grows(tree): return "exceeds every bound again and again, in one direction or the other"
+    tree = formula(followed(claim, edge))
+    # It exceeds every bound again and again, in one direction or the other.
+    if grows(tree): return
     low, high = limit(tree)
     require(edge, high < 0 or (high == 0 and claim.id == "bounded-weights"), f"stays near [{said(low)}, {said(high)}]")
-    return f"goes to {said(high)} as t grows"
 
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):
@@ -1681,40 +1645,36 @@ def loses_all(claim, edge):
 @rule("coupling-sector", "form")
 def coupling(claim, form, size): require(form, (form.text(), size.number()) == claim.scenario.coupling, "is not that of the scenario")
 
-# Agents that agree need real roots; those that follow a target or a leader need roots to the left of the axis.
-@rule("real-roots hurwitz manipulability common-order pushes-end", "number")
+# Everybody, or a leader, has roots, whose real parts are bounded.
+def left_of(bound, scenario, agents):
+    of = [agent.roots for agent in agents] + ([roots_of(scenario.body)] if scenario.reference == "leader" else [])
+    return of and all(of) and 0 < bound <= min(map(min, of))[0]
+
+# Whether all pushes have ended, or come to zero by their formulas and stay there.
+def ended(scenario, t):
+    gone = lambda trees: trees and t >= 0 and all(enclose(tree, (t, INF)) == (0, 0) for tree in trees)
+    return all(end <= t or gone(trees) for agent in scenario.agents for end, trees in agent.pushes)
+
+# Numbers of the text, or bounds of such. Agents that agree need real roots; those that follow need roots to the left of the axis.
+NUMBERS = {
+    "real-roots": (lambda s, x: left_of(x, s, s.agents) and not any(b for agent in s.agents for _, b in agent.roots),
+                   "is not a positive bound below all roots, or an agent has no roots, or a root is complex"),
+    "hurwitz": (lambda s, x: left_of(x, s, rooted(s)), "is not a positive bound below all roots, or there are none"),
+    "manipulability": (lambda s, x: x == max(agent.manipulability for agent in s.agents), "is not the largest gain"),
+    "common-order": (lambda s, x: all(len(agent.roots) == x for agent in s.agents), "is not the order of all agents"),
+    "pushes-end": (ended, "comes before the end of a push")}
+
+@rule(" ".join(NUMBERS), "number")
 def number(claim, value):
-    agents, stated = claim.scenario.agents, value.number()
-    if claim.id in ("real-roots", "hurwitz"):
-        of = [agent.roots for agent in (agents if claim.id == "real-roots" else rooted(claim.scenario))]
-        of += [roots_of(claim.scenario.body)] if claim.scenario.reference == "leader" else []
-        require(claim.proof, of and all(of), "is not so: an agent has no roots")
-        require(value, 0 < stated <= min(min(of))[0], "is not a positive bound below all roots")
-        require(claim.proof, claim.id == "hurwitz" or not any(b for roots in of for _, b in roots), "is not so: a root is complex")
-    elif claim.id == "manipulability": require(value, stated == max(agent.manipulability for agent in agents), "is not the largest gain")
-    elif claim.id == "common-order":
-        require(value, all(len(agent.roots) == stated for agent in agents), "is not the order of all agents")
-    else:
-        # A formula may come to zero, and stay there.
-        gone = lambda trees: trees and stated >= 0 and all(enclose(tree, (stated, INF)) == (0, 0) for tree in trees)
-        ended = all(end <= stated or gone(trees) for agent in agents for end, trees in agent.pushes)
-        require(value, ended, "comes before the end of a push")
-    return said(stated)
+    right, words = NUMBERS[claim.id]
+    require(value, right(claim.scenario, value.number()), words)
 
 @rule("desired-dynamics", "routh no-routh")
 def hurwitz(claim, column):
     decided(claim.scenario.polynomial and alone(claim.scenario.body), "the polynomial is not all of these dynamics")
     found = routh(claim.scenario.polynomial)
     require(column, [entry.number() for entry in column.each()] == found, "is not the first column of the array")
-    require(column, (found[-1] > 0) == (claim.proof.field("kind").text() == "routh"), "shows the opposite")
-    return f"the array of Routh has {len(found)} entries, the last {said(found[-1])}"
-
-@rule("common-first-root", "constant")
-def all_constant(claim):
-    scenario, edges = claim.scenario, [edge for phase in claim.scenario.recurring() for edge in claim.scenario.graphs[phase]]
-    same = lambda kind, body: kind == "constant_s" or kind == "piecewise_constant" and len({*body["values_s"]}) == 1
-    varies = any(isinstance(edge.weight, str) or not same(*edge.delay[:2]) for edge in edges)
-    require(claim.proof, scenario.fixed(scenario.recurring()) and not varies, "is not so by the text")
+    require(column, (found[-1] > 0) == (claim.kind == "routh"), "shows the opposite")
 
 # κ₀ is the same within each class, and all edges that recur lead within a class or to a later one: cycles stay within classes.
 @rule("common-first-root", "classes")
@@ -1732,23 +1692,17 @@ def common_first_root(claim, classes):
 
 # The pivots of A = L D Lᵀ, in rational numbers, up to the first that is not positive.
 def pivots(rows):
-    a, found = [list(row) for row in rows], []
-    for k in range(len(a)):
-        found.append(a[k][k])
-        if found[-1] <= 0: break
-        for i in range(k + 1, len(a)):
-            factor = a[i][k] / a[k][k]
-            a[i] = [x - factor * y for x, y in zip(a[i], a[k])]
-    return found
+    if not rows or rows[0][0] <= 0: return [row[0] for row in rows[:1]]
+    (pivot, *right), *below_ = rows
+    return [pivot, *pivots([[x - row[0] / pivot * y for x, y in zip(row[1:], right)] for row in below_])]
 
 # A symmetric matrix is positive definite if and only if all pivots are positive.
 def definite(node, rows, stated):
-    n = len(rows)
-    such(n <= MOST_ROWS and all(len(row) == n for row in rows), "a gain is not a square matrix of moderate size")
-    require(node, all(rows[i][j] == rows[j][i] for i in range(n) for j in range(i)), "is not of a symmetric matrix")
+    such(len(rows) <= MOST_ROWS and all(len(row) == len(rows) for row in rows), "a gain is not a square matrix of moderate size")
+    require(node, rows == [list(column) for column in zip(*rows)], "is not of a symmetric matrix")
     found = pivots(rows)
     require(stated, [pivot.number() for pivot in stated.each()] == found, "are not the pivots of the matrix")
-    require(stated, len(found) == n and min(found) > 0, "are not all positive")
+    require(stated, len(found) == len(rows) and min(found) > 0, "are not all positive")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
     f"{law.replace('_', '-')}-gains": (law,) for law in ("task_space", "attitude", "position_only", "thrust", "passivity_filter")}
@@ -1756,29 +1710,23 @@ ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, 
 # Numbers are positive, matrices are by their pivots; a mass that is not adapted is the true one.
 @rule(" ".join(ASKED_OF), "definite")
 def gains(claim, matrices):
-    stated = {}
-    for entry in matrices.each():
-        entry.only("agent", "gain", "pivots")
-        stated[entry.field("agent").text(), entry.field("gain").text()] = entry
+    stated = {(who.text(), gain.text()): column for who, gain, column in (one.fields("agent", "gain", "pivots") for one in matrices.each())}
     keys = [(agent, key) for agent in claim.scenario.agents if agent.law in ASKED_OF[claim.id] for key in GAINS[agent.law].split()]
     for agent, key in keys: gain_is_positive(claim, agent, key, agent.settings().get(key), matrices, stated)
 
 # One gain of one agent: a number, a diagonal, a matrix, or a bandwidth times scales that are positive.
 def gain_is_positive(claim, agent, key, value, matrices, stated):
-    bandwidth = value is None and agent.robot == "urdf"
-    if isinstance(value, dict):
-        kind, value = chosen(value, key, ("gain", "bandwidth_per_s"), "gains")
-        bandwidth = kind == "bandwidth_per_s"
-    if bandwidth and key == "damping":
+    kind = "bandwidth_per_s" if value is None else "gain"
+    if isinstance(value, dict): kind, value = chosen(value, key, ("gain", "bandwidth_per_s"), "gains")
+    if kind == "bandwidth_per_s" and key == "damping" and agent.robot == "urdf":
         # The scales of K are the diagonal of M(q₀); those of Γ are positive by how they are made.
-        require(claim.proof, agent.robot != "urdf" or solid(claim.scenario, agent), f"{agent.name} may have a joint without inertia")
+        require(claim.proof, solid(claim.scenario, agent), f"{agent.name} may have a joint without inertia")
     if value == 0 and key == "adaptation_gain" and agent.law in ("position_only", "thrust"):
         true = agent.settings().get("estimate_start_kg") == agent.body.get("mass_kg") and "parameter_variation" not in agent.entry
         require(claim.proof, true, f"{agent.name} keeps a wrong mass")
     elif isinstance(value, list) and value and isinstance(value[0], list):
         require(matrices, (agent.name, key) in stated, f"lacks `{key}` of {agent.name}")
-        entry = stated[agent.name, key]
-        definite(entry, [[exact(x, key) for x in listed(row, key)] for row in value], entry.field("pivots"))
+        definite(matrices, [[exact(x, key) for x in listed(row, key)] for row in value], stated[agent.name, key])
     elif value is not None:
         entries = [exact(x, key) for x in (value if isinstance(value, list) else [value])]
         require(claim.proof, entries and min(entries) > 0, f"{agent.name} has a gain `{key}` that is not positive")
@@ -1803,15 +1751,14 @@ def bounded(claim, order, stretch):
     stretch.only("range", "cells", "until_s")
     scenario, always, motions = claim.scenario, True, motions_of(claim)
     require(order, motions and order.count() >= max(most for _, _, most in motions), "is too low for a law")
-    jumps = any(most > 3 and tree[0] == "points" for paths, _, most in motions for tree in paths)
-    decided(not jumps, "the third derivative of a curve through points jumps")
+    decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
     for tree, lowest, most in ((tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"):
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
                 require(stretch, finite(tree, pieces(stretch, tree, scenario.end_s)), f"does not bound derivative {k}")
                 always = always and lasts(stretch)
             tree = derivative(tree)
-    return f"up to derivative {order.count()}", always
+    return always
 
 # A sine or cosine of what goes beyond every bound comes to 1 again and again.
 def repeats(tree): return turns_for_ever(tree) or attempt(period, tree) is not None
@@ -1845,7 +1792,6 @@ def diverges(claim, motion, axis, order):
     tree = functools.reduce(lambda tree, _: derivative(tree), range(order.count()), paths[axis.count() - 1])
     require(order, not finite(tree, [FOR_EVER]), "stays bounded")
     decided(grows(tree), "whether a derivative exceeds every bound is not decided here")
-    return f"derivative {order.count()} of axis {axis.count()} exceeds every bound"
 
 # Whether a formula is shown to be bounded on each of some stretches.
 def finite(tree, stretches): return not any(infinite(end) for stretch in stretches for end in attempt(enclose, tree, stretch) or WHOLE)
@@ -1863,8 +1809,8 @@ def drive(claim, at=FOR_EVER):
 
 def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
 
-def quaternion(claim):
-    paths = [tree for agent in claim.own for tree in agent.target or []]
+def quaternion(own):
+    paths = [tree for agent in own for tree in agent.target or []]
     decided(len(paths) in (4, 7), "is of no quaternion")
     return paths[-4:]
 
@@ -1885,12 +1831,11 @@ def singular(claim, vector):
     u, columns = [entry.number() for entry in vector.each()], jacobian(claim.scenario, *claim.own)
     require(vector, any(u) and len(u) == len(columns[0]), "is zero, or has another length")
     taken = square([dot([(x, x) for x in u], column) for column in columns])
-    whole = square(itertools.chain(*columns))[0]
-    require(vector, 10**12 * taken[1] <= whole * sum(x * x for x in u), "is not taken to zero")
+    require(vector, 10**12 * taken[1] <= square(itertools.chain(*columns))[0] * sum(x * x for x in u), "is not taken to zero")
 
 # What has to stay strictly between two numbers: (formula, what holds the lower one, what holds the upper one).
 LIMITS = {"sign-gain": drive, "target-within-reach": reached, "nonzero-quaternion": lambda claim, _=FOR_EVER: [
-    (squares(quaternion(claim)), (Fraction(0),) * 2, (INF, INF))]}
+    (squares(quaternion(claim.own)), (Fraction(0),) * 2, (INF, INF))]}
 
 @rule("sign-gain target-within-reach nonzero-quaternion", "bounds distance norm")
 def kept(claim, bounds=None, bound=None):
@@ -1899,7 +1844,7 @@ def kept(claim, bounds=None, bound=None):
     for entry, (tree, least, most) in zip(entries, limits):
         low, high = enclosed(entry, tree, claim.scenario.end_s)
         require(entry.field("within"), least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
-    return f"within ({said(limits[0][1][1])}, {said(limits[0][2][0])})", all(lasts(entry) for entry in entries)
+    return all(lasts(entry) for entry in entries)
 
 @rule("sign-gain target-within-reach", "instant out-of-reach")
 def left(claim, t_s, axis=None):
@@ -1908,13 +1853,12 @@ def left(claim, t_s, axis=None):
     tree, least, most = limits[k - 1]
     low, high = enclose(tree, (t_s.number(),) * 2)
     require(t_s, high <= least[0] or low >= most[1], f"is no time outside: [{said(low)}, {said(high)}]")
-    return f"{said(low)} at t = {said(t_s.number())} s"
 
 # The square of the scalar part Δq_o of the error of an attitude at the start. With R of the tip, p = (v, o) of the target, and
 # a = (R₃₂ − R₂₃, R₁₃ − R₃₁, R₂₁ − R₁₂), 4 Δq_o² = 1 + tr R_dᵀR says 4 pᵀp Δq_o² = pᵀp + (o² − vᵀv) tr R + 2 vᵀR v + 2 o vᵀa.
-def scalar_part(claim):
-    r = [[("hull", *(("number", end) for end in entry)) for entry in column] for column in rotation(claim.scenario, *claim.own)]
-    (*v, o), sums = quaternion(claim), functools.partial(functools.reduce, plus)
+def scalar_part(scenario, own):
+    r = [[("hull", *(("number", end) for end in entry)) for entry in column] for column in rotation(scenario, *own)]
+    (*v, o), sums = quaternion(own), functools.partial(functools.reduce, plus)
     crossed = sums([times(times(x, y), r[j][i]) for i, x in enumerate(v) for j, y in enumerate(v)])
     apart = sums([times(v[k], ("-", r[k - 2][k - 1], r[k - 1][k - 2])) for k in range(3)])
     whole = sums([squares(v), squares([o]), times(("-", squares([o]), squares(v)), sums([r[k][k] for k in range(3)])),
@@ -1923,21 +1867,12 @@ def scalar_part(claim):
 
 @rule("start-attitude", "apart")
 def start_apart(claim, least):
-    require(least, 0 < least.number() and least.number() ** 2 <= scalar_part(claim)[0], "is not shown: the scalar part may be smaller")
-
-@rule("start-attitude", "half-turn")
-def half_turn(claim): require(claim.proof, scalar_part(claim)[1] <= 0, "is not shown: the scalar part may differ from zero")
-
-# Every entry comes to zero as t grows, and the norm with it.
-@rule("nonzero-quaternion", "fades")
-def fades(claim): require(claim.proof, all(limit(tree) == (0, 0) for tree in quaternion(claim)), "is not shown: an entry may stay")
+    require(least, 0 < least.number() and least.number() ** 2 <= scalar_part(claim.scenario, claim.own)[0], "is not shown: may be smaller")
 
 @rule("nonzero-quaternion", "vanishes")
 def vanishes(claim, at_s):
-    at = at_s.number()
-    zero = at >= 0 and all(enclose(tree, (at, at)) == (0, 0) for tree in quaternion(claim))
-    require(at_s, zero, "is no time at which all entries are zero")
-    return f"all entries are zero at t = {said(at)} s"
+    at, trees = at_s.number(), quaternion(claim.own)
+    require(at_s, at >= 0 and all(enclose(tree, (at, at)) == (0, 0) for tree in trees), "is no time at which all entries are zero")
 
 # A formula without a number that it is multiplied with.
 def core(tree): return weighed(tree)[0][1] if len(weighed(tree)) == 1 else tree
@@ -1946,22 +1881,21 @@ def core(tree): return weighed(tree)[0][1] if len(weighed(tree)) == 1 else tree
 # times the same formula.
 @rule("nonzero-quaternion", "changes-sign")
 def changes_sign(claim, entry, from_s, to_s):
-    k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim)
+    k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim.own)
     require(entry, k in range(4), "is no entry")
     idle = [attempt(enclose, tree, FOR_EVER) == (0, 0) or core(tree) == core(trees[k]) for tree in trees]
     require(entry, all(idle), "is not the only one that changes")
     require(to_s, 0 <= start < end and all(finite(tree, [(start, end)]) for tree in trees), "ends no stretch on which all have values")
     (a, b), (c, d) = (enclose(trees[k], (t, t)) for t in (start, end))
     require(entry, b < 0 < c or d < 0 < a, "has one sign")
-    return f"entry {k + 1} passes zero between t = {said(start)} s and {said(end)} s"
 
 # One entry keeps away from zero.
 @rule("nonzero-quaternion", "entry-away")
 def entry_away(claim, entry, bound):
     require(entry, 1 <= entry.count() <= 4, "is no entry")
-    within = enclosed(bound, quaternion(claim)[entry.count() - 1], claim.scenario.end_s)
+    within = enclosed(bound, quaternion(claim.own)[entry.count() - 1], claim.scenario.end_s)
     require(bound.field("within"), max(within[0], -within[1]) > 0, "holds zero")
-    return f"entry {entry.count()} keeps within [{said(within[0])}, {said(within[1])}]", lasts(bound)
+    return lasts(bound)
 
 # k λ > β + κ⁴/(2 (β² − α) (β − κ)), κ the smaller root: L − (…/k) 1 of the followers is positive definite.
 @rule("swarm-coupling", "definite")
@@ -1969,8 +1903,7 @@ def swarm(claim, pivots):
     scenario = claim.scenario
     require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
     (small, turn), (large, _) = sorted(roots_of(scenario.body))
-    require(claim.proof, "alpha" not in scenario.body, "is for roots that are stated")
-    require(claim.proof, small > 0 and turn == 0, "is for real roots")
+    require(claim.proof, small > 0 and turn == 0 and "alpha" not in scenario.body, "is for real roots that are stated")
     least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
     followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
     rows = [[-least / positive(scenario.body.get("coupling"), "coupling") if i == j else Fraction(0) for j in followers] for i in followers]
@@ -1983,10 +1916,9 @@ def swarm(claim, pivots):
 # For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows
 # have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
 def factors(scenario, state=None):
-    at = states_of(state) if state else WHOLE
     for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
         psi = {"strict_feedback": "1", "pure_feedback": "x1"}.get(agent.robot, agent.body.get("psi", "1"))
-        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), at)
+        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), states_of(state) if state else WHOLE)
         yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
 
 # Or by the determinant: the product of the m − 1 other singular values is at most the power m − 1 of their quadratic mean.
@@ -2004,10 +1936,6 @@ def determinant(rows):
     minors = [determinant([row[:k] + row[k + 1:] for row in rows[1:]]) for k in range(len(rows))]
     parts = [multiply(entry, minus(minor) if k % 2 else minor) for k, (entry, minor) in enumerate(zip(rows[0] if rows else [], minors))]
     return functools.reduce(add, parts) if rows else (Fraction(1),) * 2
-
-@rule("input-factor", "factor-away")
-def input_factor(claim):
-    for name, within, floor in factors(claim.scenario): require(claim.proof, max(within[0], -within[1]) >= floor, f"is not so for {name}")
 
 # In this state, or in all.
 @rule("input-factor", "factor")
@@ -2050,15 +1978,14 @@ def check(certificate_text, scenario_text, folder, digests=True):
         require(document.field("theorem"), document.field("theorem").text() == theorem(scenario), f"must be {theorem(scenario)}")
         found += [outcome(scenario, entry, asked, spoken) for entry in document.field("hypotheses").each()]
         found += [(each, [agent] if agent else [], "", REJECTED, "is left out", "") for each, agent in sorted(asked - spoken)]
-        agreement = document.optional("agreement")
-        if agreement is not None:
+        if (agreement := document.optional("agreement")) is not None:
             unique = any(one[0] == "spanning-tree" and one[2] != VIOLATED and one[3] == ACCEPTED for one in found)
             require(agreement, unique, "is of a network whose spanning tree is not shown")
             agreed(scenario, agreement)
             found.append(("agreement", [], HOLDS, ACCEPTED, "uᵀL = 0 and Σu = 1", ""))
         if digests: same(document.field("scenario"), scenario_text, scenario.inputs)
         return found
-    except (Rejected, Meaningless, Undecided) as error: failure = error.outcome, str(error), getattr(error, "place", "")
+    except (Rejected, Meaningless, Undecided) as error: failure = (error.outcome, *error.args, "")[:3]
     except (RecursionError, MemoryError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError) as error:
         failure = REJECTED, f"cannot be checked in this form ({type(error).__name__}: {str(error)[:80]})", ""
     return [*found, ("certificate", [], "", *failure)]
@@ -2072,12 +1999,11 @@ def outcome(scenario, entry, asked, spoken):
         require(entry, key in asked or claim.id == "target-within-reach", "is not asked for by this scenario")
         spoken.add(key)
     try: return claim.id, claim.agents, claim.answer, *claim.judge(), ""
-    except Rejected as error: return claim.id, claim.agents, claim.answer, REJECTED, str(error), error.place
+    except (Rejected, Meaningless, Undecided) as error: return claim.id, claim.agents, claim.answer, *(error.outcome, *error.args, "")[:3]
 
 # The shares u ≥ 0 with uᵀL = 0 and Σu = 1 of a fixed network: what each agent's start counts in the value agreed upon.
 def agreed(scenario, node):
-    node.only("influence")
-    influence = node.field("influence")
+    influence, = node.fields("influence")
     stated = {pair_.each()[0].text(): pair_.each()[1].number() for pair_ in influence.each() if len(pair_.each()) == 2}
     require(influence, set(stated) == set(scenario.names) and len(influence.each()) == len(stated), "must be [agent, share] of everybody")
     require(node, scenario.fixed() and not scenario.varying(), "is of no fixed network")
@@ -2090,35 +2016,30 @@ def agreed(scenario, node):
 
 # Digests only say which files were meant.
 def same(node, text, inputs):
-    node.only("name", "sha256", "inputs")
-    require(node.field("sha256"), node.field("sha256").text() == hashlib.sha256(text.encode()).hexdigest(), "is not that of the scenario")
-    for entry in node.field("inputs").each():
-        entry.only("file", "sha256")
-        data = inputs.get(entry.field("file").text())
-        require(entry, data is None or hashlib.sha256(data).hexdigest() == entry.field("sha256").text(), "is not that of the file")
+    _, digest, files = node.fields("name", "sha256", "inputs")
+    require(digest, digest.text() == hashlib.sha256(text.encode()).hexdigest(), "is not that of the scenario")
+    for file, digest in (entry.fields("file", "sha256") for entry in files.each()):
+        data = inputs.get(file.text())
+        require(digest, data is None or hashlib.sha256(data).hexdigest() == digest.text(), "is not that of the file")
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description="Check a certificate of forwardstep against a scenario, without forwardstep.")
-    parser.add_argument("certificate", type=Path)
-    parser.add_argument("scenario", type=Path)
+    for file in ("certificate", "scenario"): parser.add_argument(file, type=Path)
     parser.add_argument("--ignore-digests", action="store_true", help="whether the files are those that were meant does not count")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args(arguments)
     try:
         certificate, scenario = (read(path)[1] for path in (options.certificate, options.scenario))
         found = check(certificate, scenario, options.scenario.resolve().parent, not options.ignore_digests)
-    except Meaningless as error:
-        found = [("certificate", [], "", REJECTED, str(error), "")]
+    except Meaningless as error: found = [("certificate", [], "", REJECTED, str(error), "")]
     whole = max((entry[3] for entry in found), key=(ACCEPTED, UNCHECKED, REJECTED).index, default=UNCHECKED)
     violated = [entry[0] for entry in found if entry[2:4] == (VIOLATED, ACCEPTED)]
-    if options.json:
-        entries = [dict(zip(("id", "agents", "answer", "outcome", "words", "place"), entry)) for entry in found]
-        print(json.dumps({"outcome": whole, "violated": violated, "entries": entries}))
-    else:
-        for each, agents, answer, result, words, place in found:
-            about = (f" of {', '.join(agents)}" if agents else "") + (f", {answer}" if answer else "")
-            print(f"{result}: {each}{about}: {words}{f' ({place})' if place else ''}")
-        print(f"all in all: {whole}{'; violated: ' + ', '.join(violated) if violated else ''}")
+    for each, agents, answer, result, words, place in () if options.json else found:
+        about = (f" of {', '.join(agents)}" if agents else "") + (f", {answer}" if answer else "")
+        print(f"{result}: {each}{about}: {words}{f' ({place})' if place else ''}")
+    entries = [dict(zip(("id", "agents", "answer", "outcome", "words", "place"), entry)) for entry in found]
+    summary = f"all in all: {whole}{'; violated: ' + ', '.join(violated) if violated else ''}"
+    print(json.dumps({"outcome": whole, "violated": violated, "entries": entries}) if options.json else summary)
     return (ACCEPTED, REJECTED, UNCHECKED).index(whole)
 
 if __name__ == "__main__":

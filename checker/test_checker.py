@@ -694,7 +694,7 @@ class FalseProofs(unittest.TestCase):
         self.rejected("formulas", "bounded-delays", "become negative", within, negative)
         self.rejected("formulas", "bounded-delays", "does not hold", lambda entry: None, negative)
         low = lambda entry: entry["proof"].update(enclosures=[{**entry["proof"]["enclosures"][0], "within": ["-9", "9"]}])  # noqa: E731
-        self.rejected("formulas", "bounded-weights", "come to zero", low)
+        self.rejected("formulas", "bounded-weights", "lets it vanish", low)
         self.rejected("formulas", "bounded-weights", "lacks", lambda entry: entry["proof"].update(enclosures=[]))
         # One piece is too coarse for what 32 show, and a part of the period is not the whole.
         coarse = lambda entry: entry["proof"]["enclosures"][0].update(cells=1)  # noqa: E731
@@ -963,10 +963,10 @@ class FalseProofs(unittest.TestCase):
         self.rejected("swarm-tracking", "mutual-weights", "by the text", lambda entry: None, ('["arm-2", "arm-1"], ', ""))
         self.rejected("theorem-9", "no-delay", "by the text", lambda entry: None, ("[network]", "[network]\ndelay.constant_s = 0.1"))
         self.rejected("theorem-8", "set-valued-sign", "by the text", lambda entry: None, ("gain = 2 ", 'gain = 2\nsign = "explicit" #'))
-        self.rejected("theorem-1", "fixed-graph", "weight varies", lambda entry: None, ("[network]", '[network]\nweight = "2 + sin(t)"'))
+        self.rejected("theorem-1", "fixed-graph", "by the text", lambda entry: None, ("[network]", '[network]\nweight = "2 + sin(t)"'))
         more = ("edges = [[", "[[network.phases]]\ndwell_s = 1\nedges = []\n[[network.phases]]\ndwell_s = 1\nedges = [[")
-        self.rejected("theorem-1", "fixed-graph", "graphs differ", lambda entry: None, more)
-        self.rejected("theorem-1", "dwell-time", "graphs differ", lambda entry: None, more)
+        self.rejected("theorem-1", "fixed-graph", "by the text", lambda entry: None, more)
+        self.rejected("theorem-1", "dwell-time", "by the text", lambda entry: None, more)
 
     def test_the_list_of_hypotheses(self):
         whole = json.loads((self.folder / "theorem-2.json").read_text())
@@ -1129,7 +1129,7 @@ class FalseProofs(unittest.TestCase):
         self.accepted(name, each, lambda entry: entry["proof"].update(least="0.67"))
         self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0.672"))
         self.rejected(name, each, "may be smaller", lambda entry: entry["proof"].update(least="0"))
-        self.rejected(name, each, "may differ from zero", lambda entry: entry.update(answer="violated", proof={"kind": "half-turn"}))
+        self.rejected(name, each, "by the text", lambda entry: entry.update(answer="violated", proof={"kind": "half-turn"}))
         # Turned further by its last joint, and by its first.
         for further in ("0.4, -1.2, 1.6, -1.9, -1.5, 2.9", "2.4, -1.2, 1.6, -1.9, -1.5, 0.3"):
             mutated = ("0.4, -1.2, 1.6, -1.9, -1.5, 0.3", further)
@@ -1211,8 +1211,8 @@ class FalseProofs(unittest.TestCase):
             proof = {"kind": "changes-sign", "entry": number, "from_s": from_s, "to_s": to_s}
             return lambda entry: entry.update(answer="violated", proof=proof)
         self.accepted(name, each, fades, target("exp(-t)", "1/(1+t)", 0, "exp(-t)*sin(t)"))
-        self.rejected(name, each, "may stay", fades, target("exp(-t)", 0, 0, "1e-9"))
-        self.rejected(name, each, "may stay", fades)
+        self.rejected(name, each, "by the text", fades, target("exp(-t)", 0, 0, "1e-9"))
+        self.rejected(name, each, "by the text", fades)
         words, over = "no time at which", target(0, 0, 0, "1 - t/90")
         self.accepted(name, each, vanishes("90"), over)
         for other in ("89.999999999999999", "0", "-90"): self.rejected(name, each, words, vanishes(other), over)
@@ -1313,10 +1313,18 @@ class FalseProofs(unittest.TestCase):
         rootless = ("reference.consensus = { roots_per_s = [1.5] }\n", "")
         self.rejected("framework", "real-roots", "has no roots", lambda entry: None, rootless)
 
+    def test_each_root_of_everybody_counts(self):
+        """Also one that stands behind a larger first root."""
+        for other, bound in (("-3", "1"), ("0.5", "1"), ("0.5", "0.51")):
+            behind = ("reference.consensus = { roots_per_s = [1.5] }", f"reference.consensus = {{ roots_per_s = [1.5, {other}] }}")
+            self.rejected("framework", "real-roots", "below all roots", lambda entry: entry["proof"].update(value=bound), behind)
+        behind = ("reference.consensus = { roots_per_s = [1.5] }", "reference.consensus = { roots_per_s = [1.5, 0.5] }")
+        self.accepted("framework", "real-roots", lambda entry: entry["proof"].update(value="0.5"), behind)
+
     def test_the_third_derivative_of_a_curve_through_points_jumps(self):
         points = ('target.formulas = ["0.2*t + cos(0.3*t)", "sin(0.3*t)", "-0.5"]', "target.points = { times_s = [1, 2], positions = [[0, 0, 0], [1, 1, 1]] }")
         judged, found = self.judged("formation", "bounded-target", lambda entry: None, points)
-        self.assertIn((checker.UNCHECKED, "the third derivative of a curve through points jumps"), judged, found)
+        self.assertIn((checker.UNCHECKED, "a curve's third derivative jumps"), judged, found)
 
     def test_shares(self):
         def said(*shares):

@@ -253,7 +253,7 @@ fn phases_that_differ_in_delays_alone_are_certified_as_one_graph() {
     let phases = [phase("constant_s = 0.2", "3"), phase("constant_s = 0.2", "2").replace(", [\"m-2\", \"m-3\"]", "")];
     for second in phases {
         let (outcome, words) = outcome_of_pair(&file, &integral(&second), "fixed-graph");
-        assert!(outcome == "rejected" && words.contains("the graphs differ"), "{outcome}: {words}");
+        assert!(outcome == "rejected" && words.contains("by the text"), "{outcome}: {words}");
     }
 }
 
@@ -501,7 +501,6 @@ fn the_checker_is_short_enough_to_be_read() {
     let text = fs::read_to_string(root().join("checker/forwardstep_checker.py")).unwrap();
     let is_code = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
     let lines = text.lines().filter(is_code).count();
-    // 1500 is what is wanted; what damps, swings or is drawn took more than could be made shorter elsewhere.
-    assert!(lines <= 1585, "{lines} lines that are neither blank nor a comment");
+    assert!(lines <= 1500, "{lines} lines that are neither blank nor a comment");
     assert!(text.lines().all(|line| line.chars().count() <= 140));
 }
