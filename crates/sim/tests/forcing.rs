@@ -71,6 +71,21 @@ fn regress_a_push_that_comes_while_all_rest_is_met() {
     }
 }
 
+/// Its kinks are too many to be told apart, so that values decide.
+#[test]
+fn a_push_with_more_kinks_than_can_be_told_apart_is_met_where_it_is_no_narrower_than_a_step_is_long() {
+    let ripple = (Expression::variable(0) * 1e5).sin_of().abs_of() * 1e-12;
+    for width in [5.0, 2.0] {
+        let setup = pushed(pair(0.0, 200.0), bump(20.0 / width, 120.3, width) + ripple.clone());
+        let mut fine = setup.clone();
+        fine.solver.max_step_s = Some(0.1 * width);
+        let [found, fine] = [setup, fine].map(|setup| column(&run(&setup), 0, Signal::Position, 0).to_vec());
+        let error = found.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let effect = fine.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
+        assert!(effect > 1e-3 && error < 1e-5 * (1.0 + effect), "{width} s: off by {error:e}, effect {effect:e}");
+    }
+}
+
 #[test]
 fn regress_targets_weights_and_delays_that_change_for_a_moment_are_met() {
     let tracking = |path: Path| {

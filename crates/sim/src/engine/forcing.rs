@@ -14,7 +14,7 @@
 //! the rest. Steps that are shorter by themselves keep their bits.
 //!
 //! An enclosure of a long stretch may say nothing though one of a short one does: exp(−u u) with u of both signs. Where that of a
-//! short one says nothing either, as beside a root, values decide: seventeen of them, against the cubic through four. So they do
+//! short one says nothing either, as beside a root, values decide: 32 for each step, against the cubic through four. So they do
 //! for a function whose kinks cannot be told apart.
 
 use forwardstep_core::expression::Interval;
@@ -31,8 +31,9 @@ const REGROWTH: f64 = 4.0;
 /// A stretch is looked at without so much at its ends, as a part of it and as a part of the time, s: a kink where a step begins or
 /// ends does not count, and is known as exactly as that.
 const INSIDE: [f64; 2] = [1e-9, 1e-11];
-/// Values that are looked at where enclosures say nothing.
-const VALUES: usize = 17;
+/// Values that are looked at where enclosures say nothing, and those of them that a cubic is laid through.
+const VALUES: usize = 257;
+const NODES: [usize; 4] = [0, 85, 171, VALUES - 1];
 
 /// A function of time, and when it is in force.
 #[derive(Debug)]
@@ -90,15 +91,14 @@ impl Shape {
         if values.iter().any(|value| !value.is_finite()) {
             return true;
         }
-        let nodes = [0, 5, 11, VALUES - 1];
         let cubic = |x: f64| {
             let part = |i: usize| {
-                let others = nodes.iter().filter(|j| **j != i);
+                let others = NODES.iter().filter(|j| **j != i);
                 values[i] * others.map(|j| (x - at(*j)) / (at(i) - at(*j))).product::<f64>()
             };
-            nodes.iter().map(|i| part(*i)).sum::<f64>()
+            NODES.iter().map(|i| part(*i)).sum::<f64>()
         };
-        let of_nodes = nodes.map(|k| values[k]);
+        let of_nodes = NODES.map(|k| values[k]);
         let range = of_nodes.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b))
             - of_nodes.iter().fold(f64::INFINITY, |a, b| a.min(*b));
         (0..VALUES).all(|k| (values[k] - cubic(at(k))).abs() <= (0.5 * range).max(room))
