@@ -74,7 +74,7 @@ fn regress_a_push_that_comes_while_all_rest_is_met() {
 /// Its kinks are too many to be told apart, so that values decide.
 #[test]
 fn a_push_with_more_kinks_than_can_be_told_apart_is_met_where_it_is_no_narrower_than_a_step_is_long() {
-    let ripple = (Expression::variable(0) * 1e5).sin_of().abs_of() * 1e-12;
+    let ripple = (Expression::variable(0) * 1e5).sin_of().abs_of() * 1e-20;
     for width in [5.0, 2.0] {
         let setup = pushed(pair(0.0, 200.0), bump(20.0 / width, 120.3, width) + ripple.clone());
         let mut fine = setup.clone();

@@ -122,16 +122,16 @@ impl Forcing {
         Forcing { shapes, until_s: 0.0, plain_s: f64::INFINITY, room }
     }
 
-    /// How long a step from `t` may be, s, of which `wish_s` is wanted.
-    pub(crate) fn longest_step_s(&mut self, t: f64, wish_s: f64) -> f64 {
-        if self.shapes.is_empty() || t + wish_s <= self.until_s {
+    /// How long a step from `t` may be, s, of which `proposed_s` is proposed.
+    pub(crate) fn longest_step_s(&mut self, t: f64, proposed_s: f64) -> f64 {
+        if self.shapes.is_empty() || t + proposed_s <= self.until_s {
             return f64::INFINITY;
         }
         // Steps end at kinks by themselves; to come closer and closer to one would be without end.
         let kink_s = self.shapes.iter().map(|shape| shape.next_kink_s(t)).fold(f64::INFINITY, f64::min);
-        let most = (AHEAD * wish_s).min(REGROWTH * self.plain_s).min(kink_s - t);
+        let most = (AHEAD * proposed_s).min(REGROWTH * self.plain_s).min(kink_s - t);
         let strict = self.plain_from(t, most, true);
-        let length = strict.or_else(|| self.plain_from(t, most, false)).unwrap_or(wish_s);
+        let length = strict.or_else(|| self.plain_from(t, most, false)).unwrap_or(proposed_s);
         self.until_s = t + length;
         self.plain_s = if length < most { length } else { f64::INFINITY };
         if t + length >= kink_s { f64::INFINITY } else { length }

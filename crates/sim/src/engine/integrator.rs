@@ -177,8 +177,8 @@ impl<'a> Integrator<'a> {
         }
         let mut limit_s = self.max_step_s;
         if self.fixed_step_s.is_none() {
-            let wish_s = self.proposed_step_s.min(limit_s).min(self.end_s - t);
-            limit_s = limit_s.min(self.forcing.longest_step_s(t, wish_s));
+            let proposed_s = self.proposed_step_s.min(limit_s).min(self.end_s - t);
+            limit_s = limit_s.min(self.forcing.longest_step_s(t, proposed_s));
         }
         if !self.smooth {
             let shortest_s = self.hearing.shortest_delay(&self.timeline, t);
