@@ -101,13 +101,6 @@ fn a_run_that_was_killed_has_its_rows() {
         let mut run = start(&folder, &out);
         assert!(has_journal(&mut run, &path(&out)) || k > 2);
         std::thread::sleep(Duration::from_millis(wait_ms));
-        let live = path(&out).join("rows.journal").exists();
-        if k == 2 && live {
-            let error = stderr(&forwardstep(&folder, &["report", &out]).code(2));
-            assert!(error.contains("another run is writing to") && error.contains("--out"), "{error}");
-            let note = stderr(&forwardstep(&folder, &["report", &out, "--out", "looked-at"]).success());
-            assert!(note.contains("still going on"), "{note}");
-        }
         run.kill().unwrap();
         run.wait().unwrap();
         let cut_off = path(&out).join("rows.journal").exists();
@@ -132,6 +125,22 @@ fn a_run_that_was_killed_has_its_rows() {
     }
     assert!(counts[0] > 1, "{counts:?}");
     assert!(counts[4] > counts[0], "a journal grows: {counts:?}");
+}
+
+#[test]
+fn a_run_that_goes_on_is_looked_at_elsewhere_alone() {
+    let folder = scenario();
+    // Ten times as long as the others, so that it goes on while it is looked at.
+    fs::write(folder.path().join("mine/long.toml"), LONG.replace("end_s = 20", "end_s = 200")).unwrap();
+    let mut run = start(&folder, "live");
+    assert!(has_journal(&mut run, &folder.path().join("live")));
+    let error = stderr(&forwardstep(&folder, &["report", "live"]).code(2));
+    assert!(error.contains("another run is writing to") && error.contains("--out"), "{error}");
+    let note = stderr(&forwardstep(&folder, &["report", "live", "--out", "looked-at"]).success());
+    assert!(note.contains("still going on"), "{note}");
+    assert!(run.try_wait().unwrap().is_none(), "the run outlived both looks");
+    run.kill().unwrap();
+    run.wait().unwrap();
 }
 
 #[test]
