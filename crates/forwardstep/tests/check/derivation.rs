@@ -30,6 +30,15 @@ fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {
     assert_eq!(design["agents"], serde_json::json!(["arm-1", "arm-2"]));
     assert_eq!((&design["order"], &design["degree"], &design["reduced_degree"]), (&3.into(), &2.into(), &1.into()));
     assert!(json.contains("\"paper\": \"(a2)\""), "{json}");
+    // What holds says what would break it, in every form and on the page; what does not hold is broken already.
+    let broken = "real-roots: complex roots: the disagreement can then grow";
+    assert!(text.contains("What would break it") && text.contains(broken), "{text}");
+    assert!(latex.contains(&format!("% {broken}")), "{latex}");
+    let ids: Vec<&str> = document["breaks"].as_array().unwrap().iter().map(|one| one["id"].as_str().unwrap()).collect();
+    assert!(ids.starts_with(&["spanning-tree", "dwell-time"]) && ids.contains(&"positive-gains"), "{ids:?}");
+    forwardstep(&folder, &["run", "two.toml", "--out", "run"]).success();
+    let page = std::fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+    assert!(page.contains("What would break it") && page.contains("complex roots: the disagreement can then grow"));
     forwardstep(&folder, &["explain", "two.toml", "--json", "--latex"]).code(2);
     assert!(stderr(&forwardstep(&folder, &["explain", "thre.toml"]).code(2)).contains("thre.toml"));
 }

@@ -1,5 +1,6 @@
 //! Why a run converges, as text, LaTeX, JSON and part of the report.
 
+use forwardstep_check::Break;
 use forwardstep_check::derivation::{Explained, Explanation, Line};
 use forwardstep_sim::Setup;
 use maud::{Markup, PreEscaped, html};
@@ -11,6 +12,9 @@ use crate::scenario::Scenario;
 
 /// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.
 pub const EXPLANATION_FORMAT: u32 = 1;
+
+/// The heading of what would break a hypothesis.
+const BREAKS: &str = "What would break it";
 
 /// A piece of an explanation in words, for a terminal.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +30,7 @@ pub enum TextLine {
 }
 
 /// An explanation line by line.
-pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLine> {
+pub fn explanation_lines(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> Vec<TextLine> {
     let mut lines = Vec::new();
     for design in &explanation.designs {
         lines.push(TextLine::Agents(names::some_names(setup, &design.agents)));
@@ -38,11 +42,20 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation) -> Vec<TextLi
             }));
         }
     }
+    if !breaks.is_empty() {
+        lines.push(TextLine::Agents(BREAKS.into()));
+        lines.extend(breaks.iter().map(|one| TextLine::Words(broken(one))));
+    }
     lines
 }
 
+/// One of them in a line.
+fn broken(one: &Break) -> String {
+    format!("{}: {}", one.id.name(), one.words)
+}
+
 /// An explanation in LaTeX: a section of equations for each design, with the words as comments. It needs amsmath.
-pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
+pub fn explanation_latex(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> String {
     let mut text = String::from("% needs \\usepackage{amsmath}\n");
     for design in &explanation.designs {
         text += &format!("\n{}", comment(&names::some_names(setup, &design.agents)));
@@ -58,6 +71,10 @@ pub fn explanation_latex(setup: &Setup, explanation: &Explanation) -> String {
                 }
             }
         }
+    }
+    if !breaks.is_empty() {
+        text += &format!("\n\\subsection*{{{BREAKS}}}\n");
+        text.extend(breaks.iter().map(|one| comment(&broken(one))));
     }
     text
 }
@@ -75,7 +92,7 @@ fn tag(place: &str) -> String {
 }
 
 /// An explanation as JSON.
-pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Explanation) -> Value {
+pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Explanation, breaks: &[Break]) -> Value {
     let line = |line: &Line| match line {
         Line::Words(words) => json!({ "words": words }),
         Line::Formula(formula, place) => {
@@ -100,11 +117,14 @@ pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Ex
     };
     let designs: Vec<Value> = explanation.designs.iter().map(design).collect();
     let checked = json!({ "name": scenario.name, "title": scenario.title });
-    json!({ "format": EXPLANATION_FORMAT, "version": version, "scenario": checked, "designs": designs })
+    let breaks: Vec<Value> = breaks.iter().map(|one| json!({ "id": one.id.name(), "words": one.words })).collect();
+    json!({
+        "format": EXPLANATION_FORMAT, "version": version, "scenario": checked, "designs": designs, "breaks": breaks,
+    })
 }
 
 /// An explanation as a section of the report.
-pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation) -> Markup {
+pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> Markup {
     html! {
         section #why {
             h2 { "Why it works" }
@@ -124,6 +144,14 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation) -> Ma
                                 },
                             }
                         }
+                    }
+                }
+            }
+            @if !breaks.is_empty() {
+                div.card {
+                    h3 { (BREAKS) span.by { "of what holds; the rest says itself what it lacks" } }
+                    @for one in breaks {
+                        p { code { (one.id.name()) } " " (one.words) }
                     }
                 }
             }
