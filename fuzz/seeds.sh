@@ -9,7 +9,7 @@ mkdir -p "$seeds"/{scenario,urdf,csv,state}
 # The tables of malformed inputs hand all they read to the folder. Properties read random texts, which are no better than
 # those the fuzzers make.
 FORWARDSTEP_SEEDS=$seeds cargo test --quiet --release --package forwardstep-io \
-  --test scenario --test urdf --test state -- --skip prop_ >"$seeds/log" 2>&1 || {
+  --test all -- scenario:: urdf:: state:: --skip prop_ >"$seeds/log" 2>&1 || {
   cat "$seeds/log" >&2
   exit 1
 }

@@ -2,13 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod common;
-mod identities;
-
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;
 
-use common::{arm, column, edge, masses, noise, run, setup};
+use crate::common::{arm, column, edge, masses, noise, run, setup};
 use forwardstep_check::prediction::CascadeSpread;
 use forwardstep_check::{Answer, Id, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::Gain;

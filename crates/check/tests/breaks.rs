@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{edge, masses, noise};
+use crate::common::{edge, masses, noise};
 use forwardstep_check::{Id, breaks, check};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, SpanningTree, spanning_tree};

@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
 use forwardstep_sim::reference::PureIntegral;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use common::{arm, edge, masses, setup};
+use crate::common::{arm, edge, masses, setup};
 use forwardstep_check::hypothesis::{FollowingEvidence, LinkEvidence, ReferenceEvidence, Subject};
 use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
 use forwardstep_core::expression::Expression;

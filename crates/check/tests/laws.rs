@@ -2,13 +2,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod common;
-
-use common::kinds::{
+use crate::common::kinds::{
     alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, filtered_spacecraft, formula, planar_tip,
     power_of_time, rest_at, spacecraft, tracking, tree_tip, vehicle,
 };
-use common::{About, answer, answers, arm, masses};
+use crate::common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
 use forwardstep_check::{Answer, Finding, Id, PracticalAnswer, Source, Theorem, check, practical};
 use forwardstep_core::controller::Floor;

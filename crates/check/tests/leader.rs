@@ -1,14 +1,12 @@
 //! Verdicts about following a leader.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-#[path = "leader/turns.rs"]
 mod turns;
 
 use std::sync::Arc;
 
-use common::kinds::{fading_power_of_time, formula, power_of_time};
-use common::{About, axis, edge};
+use crate::common::kinds::{fading_power_of_time, formula, power_of_time};
+use crate::common::{About, axis, edge};
 use forwardstep_check::{Answer, Id, Report, SamplingMargin, Source, Theorem, check, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
@@ -119,18 +117,22 @@ fn thm8_velocity_acceleration_and_jerk_all_have_to_be_bounded() {
     // t^(k − ½) has k − 1 derivatives that are finite at t = 0.
     let said = |bounded: i32| {
         let path = fading_power_of_time(0.01, f64::from(bounded) - 0.5);
-        common::answer(&setup(FollowingDesign::Continuous, path, 1e6), About::LeaderMotion)
+        crate::common::answer(&setup(FollowingDesign::Continuous, path, 1e6), About::LeaderMotion)
     };
     let none = Answer::NotShown;
     assert_eq!([1, 2, 3, 4].map(said), [none, none, none, Answer::Holds]);
     // Where it is does not matter, so it may travel for ever.
     let travels = formula(Expression::variable(0));
-    assert_eq!(common::answer(&setup(FollowingDesign::Continuous, travels, 2.0), About::LeaderMotion), Answer::Holds);
+    assert_eq!(
+        crate::common::answer(&setup(FollowingDesign::Continuous, travels, 2.0), About::LeaderMotion),
+        Answer::Holds
+    );
 }
 
 /// What is said about γ as it is, and a little above.
 fn around(design: FollowingDesign, path: &Path, gamma: f64) -> [Answer; 2] {
-    [gamma, gamma * (1.0 + 1e-9)].map(|gamma| common::answer(&setup(design, path.clone(), gamma), About::LeaderGain))
+    [gamma, gamma * (1.0 + 1e-9)]
+        .map(|gamma| crate::common::answer(&setup(design, path.clone(), gamma), About::LeaderGain))
 }
 
 #[test]
@@ -159,14 +161,14 @@ fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
     let said = |choice| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
         assert!(setup.change_reference(|following: &mut Following| following.choice = choice));
-        common::answer(&setup, About::SetValued)
+        crate::common::answer(&setup, About::SetValued)
     };
     // Held for 2 s, or for longer than α⁻¹/100, it is not.
     let every = |period_s: f64, end_s: f64| {
         let mut setup = setup(FollowingDesign::Continuous, wave(), 3.0);
         setup.time.end_s = end_s;
         assert!(setup.change_reference(|following: &mut Following| following.period_s = period_s));
-        common::answer(&setup, About::SetValued)
+        crate::common::answer(&setup, About::SetValued)
     };
     let slow = Answer::NotCovered;
     assert_eq!([every(2.0, 20.0), every(0.011, 20.0), every(0.01, 20.0)], [slow, slow, Answer::Holds]);
@@ -194,7 +196,7 @@ fn thm9_any_link_with_a_delay_is_not_covered() {
         let mut setup = setup(FollowingDesign::Differentiable, wave(), 6.0);
         setup.network.delays = delays.map(Delay::constant).to_vec();
         setup.network.schedule = Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 1)]);
-        common::answer(&setup, About::Prompt)
+        crate::common::answer(&setup, About::Prompt)
     };
     let (holds, no) = (Answer::Holds, Answer::NotCovered);
     assert_eq!([said([0.0, 0.0]), said([0.1, 0.0]), said([0.0, 1e-9])], [holds, no, no]);
@@ -294,7 +296,7 @@ fn prop_a_swarm_weighs_both_ways_alike_and_the_leader_is_no_part_of_that() {
     let said = |there: f64, back: f64| {
         let mut setup = setup(FollowingDesign::Swarm { coupling: 50.0 }, wave(), 5.0);
         setup.network.schedule = Schedule::fixed(vec![edge(2, 0, 3.0, 0), edge(0, 1, there, 0), edge(1, 0, back, 0)]);
-        common::answer(&setup, About::Undirected)
+        crate::common::answer(&setup, About::Undirected)
     };
     assert_eq!(
         [said(1.0, 1.0), said(1.0, 1.1), said(1.1, 1.0)],

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{edge, masses};
+use crate::common::{edge, masses};
 use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::Exchange;

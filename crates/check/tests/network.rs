@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::kinds::{alone, blind_mass, chain};
-use common::{About, answer, answers, arm, edge, setup};
+use crate::common::kinds::{alone, blind_mass, chain};
+use crate::common::{About, answer, answers, arm, edge, setup};
 use forwardstep_check::{Answer, Source, Theorem, check};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, SawTooth};

@@ -2,33 +2,22 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod common;
-#[path = "predictions/course.rs"]
 mod course;
-#[path = "predictions/gains.rs"]
 mod gains;
-#[path = "predictions/guaranteed.rs"]
 mod guaranteed;
-#[path = "predictions/inputs_smoothness.rs"]
 mod inputs_smoothness;
-#[path = "predictions/own_smoothness.rs"]
 mod own_smoothness;
-#[path = "predictions/rate.rs"]
 mod rate;
-#[path = "predictions/rubbing.rs"]
 mod rubbing;
-#[path = "predictions/smoothness.rs"]
 mod smoothness;
-#[path = "predictions/start.rs"]
 mod start;
-#[path = "predictions/vehicles.rs"]
 mod vehicles;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;
 
-use common::kinds::{alone, blind_mass};
-use common::{arm, column, edge, masses, run, setup};
+use crate::common::kinds::{alone, blind_mass};
+use crate::common::{arm, column, edge, masses, run, setup};
 use forwardstep_check::{
     Finding, NoPrediction, NotFixed, PowerBound, SamplingMargin, along, mean_power_w, practical, predict,
 };

@@ -2,19 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-#[path = "pushes/injected.rs"]
 mod injected;
-#[path = "pushes/injected_alone.rs"]
 mod injected_alone;
-#[path = "pushes/manipulability.rs"]
 mod manipulability;
 
 use forwardstep_sim::reference::{Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;
 
-use common::kinds::{alone, blind_mass, cascade, chain, planar_tip, rest_at, spacecraft, tracking, vehicle};
-use common::{axis, column, edge, run, setup};
+use crate::common::kinds::{alone, blind_mass, cascade, chain, planar_tip, rest_at, spacecraft, tracking, vehicle};
+use crate::common::{axis, column, edge, run, setup};
 use forwardstep_check::{Answer, Id, NoPrediction, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;

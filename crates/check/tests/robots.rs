@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod common;
-
 use std::sync::Arc;
 
-use common::kinds::{alone, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};
-use common::{arm, noise, setup};
+use crate::common::kinds::{alone, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};
+use crate::common::{arm, noise, setup};
 use forwardstep_check::hypothesis::{InertiaUnit, ReachSide, RobotEvidence};
 use forwardstep_check::{Answer, Evidence, Hypothesis, Id, Rigour, SamplingMargin, check, fastest_damping, practical};
 use forwardstep_core::Gain;
@@ -56,7 +54,7 @@ fn tree(links: &[(JointKind, [f64; 3], [f64; 10])]) -> AgentSetup {
     let assembled = Tree::assemble(&links, [0.0, 0.0, -9.81]).unwrap();
     let axis = |(index, kind)| Axis {
         unit: if kind == JointKind::Revolute { AxisUnit::Radian } else { AxisUnit::Metre },
-        ..common::axis(["first", "second", "third"][index])
+        ..crate::common::axis(["first", "second", "third"][index])
     };
     let mut agent = arm(0, &[1.0, 2.0]);
     agent.name = "tree".into();

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{About, answer, column, edge, masses, run};
+use crate::common::{About, answer, column, edge, masses, run};
 use forwardstep_check::hypothesis::{Evidence, GraphEvidence, ReferenceEvidence};
 use forwardstep_check::{Answer, Hypothesis, Id, check, predict};
 use forwardstep_sim::delay::{Delay, SawTooth};

@@ -2,17 +2,14 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-#[path = "verdicts/asked.rs"]
 mod asked;
-mod common;
-#[path = "verdicts/complex_roots.rs"]
 mod complex_roots;
 
 use forwardstep_sim::reference::Backstepping;
 use std::sync::Arc;
 
-use common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
-use common::{About, answer, answers, edge, masses};
+use crate::common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
+use crate::common::{About, answer, answers, edge, masses};
 use forwardstep_check::{
     Answer, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
 };
@@ -228,7 +225,7 @@ fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
     let found = |omega: f64, k: f64| {
         let mut setup = pair([constant(0.0), constant(0.0)]);
         let adaptation = Gain::Bandwidth(omega);
-        setup.agents[0] = common::arm(0, &[1.0, 2.0]);
+        setup.agents[0] = crate::common::arm(0, &[1.0, 2.0]);
         let damping = Gain::Number(k);
         setup.agents[0].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5], bounds: None });
         setup.control = control(0.0);
@@ -249,9 +246,9 @@ fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
 fn the_adaptation_of_those_that_follow_targets_of_their_own_is_not_in_the_margin() {
     let margin = |tracks: bool| {
         let mut setup = if tracks {
-            tracking(common::arm(0, &[1.0, 2.0]), vec![rest_at(0.1), rest_at(0.2)])
+            tracking(crate::common::arm(0, &[1.0, 2.0]), vec![rest_at(0.1), rest_at(0.2)])
         } else {
-            alone(common::arm(0, &[1.0, 2.0]))
+            alone(crate::common::arm(0, &[1.0, 2.0]))
         };
         setup.control = control(0.0);
         SamplingMargin::of(&setup).unwrap()
@@ -340,7 +337,7 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
     // |cos(500 π t / 20)| is one at every look, 20 s / 2000 apart, if those are at its crests, and zero between them.
     use core::f64::consts::TAU;
     let rate = TAU / (2.0 * 20.0 / 2000.0);
-    let crests = common::kinds::formula((Expression::variable(0) * rate).cos_of());
+    let crests = crate::common::kinds::formula((Expression::variable(0) * rate).cos_of());
     let said = answer(&tracking(spacecraft(), target(crests)), About::Path);
     assert_eq!(said, Answer::Violated, "no look sees it at zero, but between them it is");
 }
@@ -348,8 +345,9 @@ fn thm7_what_is_known_of_a_spacecraft_holds_and_a_path_is_looked_at_between_the_
 #[test]
 fn a_passivity_filter_is_shown_for_what_keeps_still_and_for_equal_moments_of_inertia() {
     let still = || [0.3, -0.2, 0.1, 1.0].map(rest_at).to_vec();
-    let turning =
-        || vec![rest_at(0.0), common::kinds::formula(Expression::variable(0).sin_of()), rest_at(0.0), rest_at(2.0)];
+    let turning = || {
+        vec![rest_at(0.0), crate::common::kinds::formula(Expression::variable(0).sin_of()), rest_at(0.0), rest_at(2.0)]
+    };
     let said = |target, moments: [f64; 3]| {
         let mut setup = tracking(filtered_spacecraft(), target);
         let inertia_kg_m2 = std::array::from_fn(|row| std::array::from_fn(|k| if row == k { moments[k] } else { 0.0 }));

@@ -1,9 +1,7 @@
 //! References, sampled agents and laws at their edges: starts, signs, samples, limits, divisors.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
-use common::looped::polynomial as moved;
+use crate::common::looped::polynomial as moved;
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{

@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // In helpers too.
 
-mod common;
-
-use common::models;
-use common::random::Random;
+use crate::common::models;
+use crate::common::random::Random;
 use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::tree::{
     Anchor, Assembled, Follows, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, TreeTip, Uncertain,

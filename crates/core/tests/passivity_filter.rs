@@ -1,10 +1,8 @@
 //! A filter of the attitude error in the place of Theorem 7: what V loses, and the term that wheels leave.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::looped::{Looped, polynomial};
-use common::random::Random;
+use crate::common::looped::{Looped, polynomial};
+use crate::common::random::Random;
 use forwardstep_core::attitude::{Desired, cross, difference, dot, normalized, rate, rotate_back, times};
 use forwardstep_core::controller::{Jet, PassivityFilter};
 use forwardstep_core::plant::{Spacecraft, Wheel, Wheels};

@@ -3,11 +3,9 @@
 
 #![allow(clippy::unwrap_used)] // In helpers too.
 
-mod common;
-
-use common::dual::{Dual, constants, duals};
-use common::random::Random;
-use common::{dot, error, times, transpose_times};
+use crate::common::dual::{Dual, constants, duals};
+use crate::common::random::Random;
+use crate::common::{dot, error, times, transpose_times};
 use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
 use forwardstep_core::robot::{
     Driven, Drives, Friction, Lagrangian, PlanarArm, PlanarLinks, PlanarTip, PointMass, SMOOTHING_LOSS, Ship,

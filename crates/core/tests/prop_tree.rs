@@ -3,10 +3,8 @@
 
 #![allow(clippy::unwrap_used)] // In helpers too.
 
-mod common;
-
-use common::error;
-use common::random::{Random, inertia_of};
+use crate::common::error;
+use crate::common::random::{Random, inertia_of};
 use forwardstep_core::robot::tree::{
     Anchor, Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, PointWrench, Tree, TreeScratch,
 };

@@ -1,10 +1,8 @@
 //! (94)–(107): a spacecraft with reaction wheels, and its attitude without angular velocity.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-
-use common::looped::{Looped, polynomial};
-use common::random::Random;
+use crate::common::looped::{Looped, polynomial};
+use crate::common::random::Random;
 use forwardstep_core::attitude::{
     Desired, angle, cross, difference, dot, normalized, product, rate, rate_inertial, rotate, rotate_back, times,
 };

@@ -1,14 +1,11 @@
 //! (71)–(82): the tip of an arm with uncertain lengths, without its velocity.
 #![allow(clippy::unwrap_used)]
 
-mod common;
-#[path = "task_space/lengths.rs"]
 mod lengths;
-#[path = "task_space/measured.rs"]
 mod measured;
 
-use common::looped::{Looped, polynomial};
-use common::random::{Random, inertia_of};
+use crate::common::looped::{Looped, polynomial};
+use crate::common::random::{Random, inertia_of};
 use forwardstep_core::attitude::{dot, product, rotate};
 use forwardstep_core::controller::{Controller, Jet, NullSpace, TaskSpace, Trouble};
 use forwardstep_core::law::ParameterBounds;

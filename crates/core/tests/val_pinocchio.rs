@@ -1,8 +1,6 @@
 //! The kernels of a tree against Pinocchio; `validation/pinocchio/` says how the fixtures came about.
 
-mod common;
-
-use common::{dot, error, model, models, times, transpose_times};
+use crate::common::{dot, error, model, models, times, transpose_times};
 use forwardstep_core::robot::tree::{Axes, LinkPoint, PointWrench};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 

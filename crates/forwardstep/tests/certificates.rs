@@ -2,14 +2,9 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "certificates/cases.rs"]
 mod cases;
-#[path = "certificates/formulas.rs"]
 mod formulas;
-#[path = "certificates/robots.rs"]
 mod robots;
-mod support;
-#[path = "certificates/witnesses.rs"]
 mod witnesses;
 
 use std::collections::BTreeSet;
@@ -17,11 +12,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use crate::support::{folder, forwardstep, stderr, stdout};
 use forwardstep::check::{certify, check};
 use forwardstep::io::output::certificate_document;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use serde_json::Value;
-use support::{folder, forwardstep, stderr, stdout};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")

@@ -2,23 +2,17 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "check/derivation.rs"]
 mod derivation;
-#[path = "check/narrow.rs"]
 mod narrow;
-#[path = "check/protocols.rs"]
 mod protocols;
-#[path = "check/smoothness.rs"]
 mod smoothness;
-mod support;
-
 use std::fs;
 
+use crate::support::{folder, forwardstep, stderr, stdout};
 use forwardstep::check::{Id, SamplingMargin};
 use forwardstep::io::output::Deployment;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use serde_json::Value;
-use support::{folder, forwardstep, stderr, stdout};
 use tempfile::TempDir;
 
 /// Two arms, of which nobody hears the second, with limits that are enforced.

@@ -2,16 +2,13 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-#[path = "cli/advice.rs"]
 mod advice;
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};
 
+use crate::support::{folder, forwardstep, names, stderr, stdout};
 use forwardstep::io::scenario::SHIPPED_SCENARIOS;
-use support::{folder, forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
 /// Two arms that agree within a few seconds; a `[goal]` or `[solver]` may follow.

@@ -2,13 +2,11 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 
+use crate::support::{folder, forwardstep, names, stderr, stdout};
 use serde_json::Value;
-use support::{folder, forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
 /// Two point masses that agree over a link that switches.

@@ -2,11 +2,9 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 
-use support::{folder, forwardstep, stdout};
+use crate::support::{folder, forwardstep, stdout};
 
 /// A number of the summary.
 fn count(said: &str, words: &str) -> u64 {

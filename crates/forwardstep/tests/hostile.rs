@@ -2,12 +2,10 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 use std::time::{Duration, Instant};
 
-use support::{folder, forwardstep, stderr, stdout};
+use crate::support::{folder, forwardstep, stderr, stdout};
 
 /// Nothing of these may reach a terminal from outside.
 fn is_tame(said: &str) -> bool {

@@ -2,16 +2,14 @@
 #![cfg(all(feature = "program", unix))]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command as Process, Stdio};
 use std::time::{Duration, Instant};
 
+use crate::support::{folder, forwardstep, names, stderr};
 use forwardstep::io::output::SavedRun;
 use forwardstep::sim::Recording;
-use support::{folder, forwardstep, names, stderr};
 use tempfile::TempDir;
 
 /// A run of some seconds, since its steps are short.

@@ -2,12 +2,10 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 
+use crate::support::{folder, forwardstep, names, stderr};
 use forwardstep::io::shapes::Shapes;
-use support::{folder, forwardstep, names, stderr};
 use tempfile::TempDir;
 
 const URDF: &str = r#"<robot name="arm">

@@ -2,11 +2,10 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 use std::ops::ControlFlow;
 
+use crate::support::{folder, forwardstep, stderr, stdout};
 use forwardstep::check::{Answer, check};
 use forwardstep::io::robot::open_robot;
 use forwardstep::io::scenario::kinds::Kinds;
@@ -15,7 +14,6 @@ use forwardstep::io::scenario::{
 };
 use forwardstep::io::{SourceText, UrdfOptions};
 use forwardstep::sim::{Ending, Exchange, simulate};
-use support::{folder, forwardstep, stderr, stdout};
 
 const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");
 

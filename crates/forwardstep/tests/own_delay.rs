@@ -4,14 +4,13 @@
 
 #[path = "../examples/own_delay.rs"]
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
-mod own_delay;
-
-mod support;
+mod example;
 
 use std::fs;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 
+use crate::support::assert_report_is_rebuilt;
 use forwardstep::check::{Answer, Id, Rigour, check, predict};
 use forwardstep::io::SourceText;
 use forwardstep::io::output::ending_sentence;
@@ -22,7 +21,6 @@ use forwardstep::sim::schedule::{Dwell, Extent};
 use forwardstep::sim::{Ending, Setup, simulate};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
-use support::assert_report_is_rebuilt;
 
 const MASSES: &str = r#"format = 2
 time = { end_s = 12 }
@@ -56,11 +54,11 @@ disagreement_below = 0.05
 "#;
 
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
-    own_delay::kinds().unwrap().read_scenario("masses", &SourceText::new("masses.toml", text), None)
+    example::kinds().unwrap().read_scenario("masses", &SourceText::new("masses.toml", text), None)
 }
 
 fn forwardstep(arguments: &[&str]) -> ExitCode {
-    let kinds = own_delay::kinds().unwrap();
+    let kinds = example::kinds().unwrap();
     program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
 }
 
@@ -128,7 +126,7 @@ fn a_delay_of_ones_own_may_stand_wherever_one_may() {
 
 #[test]
 fn the_schema_holds_them_and_the_program_without_them_does_not_know_them() {
-    let schema = own_delay::kinds().unwrap().schema().to_value();
+    let schema = example::kinds().unwrap().schema().to_value();
     for (choice, key, table) in [
         ("DelayFile", "collatz", "CollatzFile"),
         ("SwitchingFile", "thue_morse", "ThueMorseFile"),

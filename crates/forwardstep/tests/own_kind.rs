@@ -6,12 +6,11 @@
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
 mod tank;
 
-mod support;
-
 use std::fs;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use crate::support::assert_report_is_rebuilt;
 use forwardstep::check::{Answer, Id, Rigour, check};
 use forwardstep::core::controller::{Asked, Balance, Feedback, FeedbackInput, Truth};
 use forwardstep::core::plant::VectorField;
@@ -22,7 +21,6 @@ use forwardstep::{program_with, sim};
 use miette::Diagnostic;
 use sim::system::{Declaration, DeclaredClaim, Known};
 use sim::{Assembly, Block, Interface, Law, LawWords, RobotSetup, SetupError, Signal};
-use support::assert_report_is_rebuilt;
 
 const TANKS: &str = r#"format = 2
 time = { end_s = 10 }

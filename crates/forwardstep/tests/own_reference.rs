@@ -4,15 +4,15 @@
 
 #[path = "../examples/own_reference.rs"]
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]
-mod own_reference;
-
-mod support;
+mod example;
 
 use std::fs;
 use std::ops::ControlFlow;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+use crate::support::assert_report_is_rebuilt;
+use example::Anchored;
 use forwardstep::check::derivation::explain;
 use forwardstep::check::derivation::residual::{Missing, Residuals};
 use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check, predict};
@@ -29,8 +29,6 @@ use forwardstep::sim::reference::Consensus;
 use forwardstep::sim::schedule::{Phase, Schedule};
 use forwardstep::sim::{AgentSetup, Network, Outcome, Setup, Signal, simulate, simulate_moments};
 use miette::Diagnostic;
-use own_reference::Anchored;
-use support::assert_report_is_rebuilt;
 
 const HOMES: &str = r#"format = 2
 time = { end_s = 30 }
@@ -59,11 +57,11 @@ disagreement_below = 0.01
 "#;
 
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
-    own_reference::kinds().unwrap().read_scenario("homes", &SourceText::new("homes.toml", text), None)
+    example::kinds().unwrap().read_scenario("homes", &SourceText::new("homes.toml", text), None)
 }
 
 fn forwardstep(arguments: &[&str]) -> ExitCode {
-    let kinds = own_reference::kinds().unwrap();
+    let kinds = example::kinds().unwrap();
     program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
 }
 
@@ -196,7 +194,7 @@ fn their_mistakes_are_reported_at_their_place_with_near_matches() {
 
 #[test]
 fn the_schema_holds_them_and_the_program_without_them_does_not_know_them() {
-    let schema = own_reference::kinds().unwrap().schema().to_value();
+    let schema = example::kinds().unwrap().schema().to_value();
     for (choice, table) in [("ReferenceFile", "AnchoredFile"), ("AgentReferenceFile", "AgentReferenceTable")] {
         let all = schema["$defs"][choice]["oneOf"].as_array().unwrap();
         let own = all.iter().find(|one| one["required"][0] == "anchored").unwrap();

@@ -2,14 +2,12 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::ops::ControlFlow;
 
+use crate::support::{folder, forwardstep, stderr, stdout};
 use forwardstep::check::predict;
 use forwardstep::io::scenario::open_scenario;
 use forwardstep::sim::{Ending, Outcome, Setup, Signal, simulate};
-use support::{folder, forwardstep, stderr, stdout};
 
 /// The scenario as it is, or without λ.
 fn setup(name: &str, lambda: bool) -> Setup {

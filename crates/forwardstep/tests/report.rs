@@ -2,13 +2,11 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use support::{folder, forwardstep, stderr};
+use crate::support::{folder, forwardstep, stderr};
 use tempfile::TempDir;
 
 /// Two arms that estimate; a `[goal]` or `[solver]` may follow.

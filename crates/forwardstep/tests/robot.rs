@@ -2,12 +2,10 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 
+use crate::support::{forwardstep, names, stderr, stdout};
 use serde_json::{Map, Value, json};
-use support::{forwardstep, names, stderr, stdout};
 use tempfile::TempDir;
 
 const TREE: &str = include_str!("../../../validation/urdf/tree.urdf");

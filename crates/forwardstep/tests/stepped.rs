@@ -3,13 +3,13 @@
 
 #[path = "../examples/stepped.rs"]
 #[allow(dead_code, unreachable_pub, missing_docs, reason = "an example that is a program of its own")]
-mod stepped;
+mod example;
 
 use std::ops::ControlFlow;
 
+use example::{MASS_KG, PERIOD_S, Pair, START_M, latency_s, moved};
 use forwardstep::sim::delay::{Delay, Packet, Trace};
 use forwardstep::sim::{AgentSetup, Ending, Known, Network, RobotSetup, Setup, Signal, simulate_samples};
-use stepped::{MASS_KG, PERIOD_S, Pair, START_M, latency_s, moved};
 
 const END_S: f64 = 20.0;
 

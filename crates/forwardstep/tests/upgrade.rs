@@ -2,15 +2,13 @@
 #![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod support;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::support::{folder, forwardstep, names, stderr, stdout};
 use forwardstep::io::SourceText;
 use forwardstep::io::output::SavedRun;
 use forwardstep::io::scenario::{ScenarioError, Upgraded, read_scenario, shipped_scenario, upgrade};
-use support::{folder, forwardstep, names, stderr, stdout};
 
 /// Files as they were written in format 1.
 fn old(name: &str) -> PathBuf {

@@ -2,13 +2,11 @@
 #![cfg(feature = "report")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod support;
-
+use crate::support::{agent, setup, two_arms};
 use forwardstep_io::output::{Absence, Disagreement, DisagreementSeries, LimitKind, Metrics};
 use forwardstep_io::scenario::Goal;
 use forwardstep_sim::recording::{BreakdownCause, Column};
 use forwardstep_sim::{AxisUnit, Breakdown, Ending, Outcome, Recording, Setup, Signal};
-use support::{agent, setup, two_arms};
 
 /// Two agents with one axis, by hand: q₁ = 0, 1, 1, 1 and q₂ = 2, 2, 1.5, 1.25 at t = 0, 1, 2, 3.
 fn by_hand() -> (Setup, Recording) {

@@ -2,13 +2,12 @@
 #![cfg(feature = "report")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod support;
-
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::support::{agent, outcome, record, setup, two_arms, verdicts};
 use forwardstep_check::hypothesis::{GraphEvidence, Named};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
@@ -18,7 +17,6 @@ use forwardstep_sim::recording::BreakdownCause;
 use forwardstep_sim::{Breakdown, Ending, GainRates, Known, Method, Outcome, Recording, Setup, Signal, Stiffness};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
-use support::{agent, outcome, record, setup, two_arms, verdicts};
 
 fn write(path: &Path, setup: &Setup, outcome: &Outcome) {
     let report = verdicts();

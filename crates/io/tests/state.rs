@@ -1,9 +1,6 @@
 //! States of robots as JSON: what they say, and what is refused where.
 #![allow(missing_docs, clippy::unwrap_used)]
 
-#[path = "support/seeds.rs"]
-mod seeds;
-
 use forwardstep_io::robot::{JointState, read_state};
 use forwardstep_io::{Problem, SourceText};
 use proptest::prelude::*;
@@ -12,7 +9,7 @@ const JOINTS: [&str; 2] = ["shoulder", "elbow"];
 
 /// The state, or the error and its help as the user sees them.
 fn read(text: &str) -> Result<JointState, String> {
-    seeds::keep("state", text);
+    crate::seeds::keep("state", text);
     read_state(&SourceText::new("s.json", text), &JOINTS).map_err(|error| match error.problem.help() {
         Some(help) => format!("{error}; {help}"),
         None => error.to_string(),

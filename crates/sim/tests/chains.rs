@@ -1,20 +1,17 @@
 //! Chains of Section IV: the identities of the proofs along real runs, agreement, and sampled control.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-#[path = "chains/desired.rs"]
 mod desired;
-#[path = "chains/protocols.rs"]
 mod protocols;
 
 use std::ops::ControlFlow;
 
 use std::sync::Arc;
 
-use common::chains::{
+use crate::common::chains::{
     adaptive, agent, cascades, derivatives, estimate, linearising, number, pure_feedback, tracking, x,
 };
-use common::{assert_first_order, balance_residual, column, last, run, setup, silent, switching, truth};
+use crate::common::{assert_first_order, balance_residual, column, last, run, setup, silent, switching, truth};
 use forwardstep_core::plant::{CascadeTerms, Formulas};
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::reference::Consensus;

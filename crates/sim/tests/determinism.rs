@@ -3,13 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod cases;
-mod common;
-
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-use cases::{cases, setup};
+use crate::cases::{cases, setup};
 use forwardstep_sim::{
     Actuators, Control, NetworkJump, Sensors, Setup, Signal, VelocitySensor, simulate, simulate_jumps,
 };
@@ -17,8 +14,8 @@ use forwardstep_sim::{
 /// All Lagrangian cases, then a run of every other kind of system, continuous and sampled.
 fn setups() -> Vec<(String, Setup)> {
     let mut all: Vec<_> = cases().iter().map(|case| (case.name.clone(), setup(case))).collect();
-    for (name, setup) in common::every_kind() {
-        all.push((format!("{name}-sampled"), common::sampled(setup.clone(), 500.0)));
+    for (name, setup) in crate::common::every_kind() {
+        all.push((format!("{name}-sampled"), crate::common::sampled(setup.clone(), 500.0)));
         all.push((name.into(), setup));
     }
     all
@@ -104,7 +101,7 @@ fn digest_a_run_whose_jumps_are_looked_at_has_the_same_bits() {
 
 #[test]
 fn digest_sampled_runs_have_the_same_bits_as_on_the_machine_that_wrote_them() {
-    let mut setup = cases::setup(&cases()[14]);
+    let mut setup = crate::cases::setup(&cases()[14]);
     setup.control = Some(Control {
         failures: Default::default(),
         sample_hz: 400.0,

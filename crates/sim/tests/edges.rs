@@ -1,14 +1,12 @@
 //! Networks, delays and sampled control at their edges: what is just allowed, just refused, just in time.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use forwardstep_sim::reference::PureIntegral;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::single::{craft, half_a_turn, planar, targets};
-use common::{column, columns, masses, run, sampled, silent};
+use crate::common::single::{craft, half_a_turn, planar, targets};
+use crate::common::{column, columns, masses, run, sampled, silent};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
@@ -200,7 +198,7 @@ fn a_nonlinear_coupling_is_sampled_like_a_linear_one() {
     let mut setup = slow_masses(0.2);
     setup.control = None;
     setup.network.coupling = Coupling::Tanh { scale: 0.3 };
-    common::assert_first_order(&setup, 200.0);
+    crate::common::assert_first_order(&setup, 200.0);
 }
 
 fn with_control(mut setup: Setup, change: impl Fn(&mut Control)) -> Setup {

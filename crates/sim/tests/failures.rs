@@ -1,14 +1,12 @@
 //! What happens when a sampled controller cannot go on as usual: messages that are too old, and steps that fail.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::chains::{agent, number, x};
-use common::{column, consensus_of_masses, fixed, run, sampled, setup, silent};
+use crate::common::chains::{agent, number, x};
+use crate::common::{column, consensus_of_masses, fixed, run, sampled, setup, silent};
 use forwardstep_core::plant::Formulas;
 use forwardstep_core::sampled::SafeCommand;
 use forwardstep_sim::coupling::Coupling;

@@ -1,13 +1,11 @@
 //! Following a leader, (110), (119) and (122): the identity of the proof, convergence, and what the choice of the sign does.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::following::{DESIGNS, OBSERVER, arms, masses, observes};
-use common::{balance_residual, column, columns, run, sampled, truth};
+use crate::common::following::{DESIGNS, OBSERVER, arms, masses, observes};
+use crate::common::{balance_residual, column, columns, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth};
@@ -470,7 +468,7 @@ fn val_an_observer_agrees_with_an_independent_solver() {
 fn prop_sampled_observers_come_to_continuous_ones() {
     let mut setup = arms(OBSERVER, Choice::Layer { width: 0.05 }, 0.8, 6.0);
     setup.agents.iter_mut().for_each(|agent| agent.start.dq = vec![0.2, -0.1]);
-    common::assert_first_order(&setup, 400.0);
+    crate::common::assert_first_order(&setup, 400.0);
     // What is told first is what each starts with, not zeros.
     let mut first = Vec::new();
     setup.time.end_s = 0.005;

@@ -1,11 +1,9 @@
 //! What enters as a function of time is met, however long steps have become before it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{column, last, run};
+use crate::common::{column, last, run};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::formula::BoundedFormula;

@@ -2,11 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod cases;
-mod common;
-
-use cases::{cases, setup};
-use common::{every_kind, following, run, sampled};
+use crate::cases::{cases, setup};
+use crate::common::{every_kind, following, run, sampled};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, RandomHold, SawTooth};
 use forwardstep_sim::leader::FollowingDesign;

@@ -1,12 +1,10 @@
 //! Robots under (6)–(7) that follow trajectories of their own: the balance of the proof, arrival, closed forms, sampled control.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::single::anthropomorphic;
-use common::{RTOL, assert_first_order, balance_residual, column, fixed, last, run, sampled, wave};
+use crate::common::single::anthropomorphic;
+use crate::common::{RTOL, assert_first_order, balance_residual, column, fixed, last, run, sampled, wave};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{RootPair, RootSet};

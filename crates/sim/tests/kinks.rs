@@ -1,12 +1,10 @@
 //! Formulas with kinks: leaders, targets, offsets, delays, weights and pushes. Steps end there, and derivatives are one-sided.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::following::{DESIGNS, masses};
-use common::{apart, column, columns, consensus_of_masses, last, run, vehicles};
+use crate::common::following::{DESIGNS, masses};
+use crate::common::{apart, column, columns, consensus_of_masses, last, run, vehicles};
 use forwardstep_core::expression::{Expression, KinkError};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
@@ -111,7 +109,7 @@ fn has_order_four(name: &str, mut setup: Setup, step_s: f64) {
 
 #[test]
 fn fixed_steps_keep_their_order_across_the_kinks_of_everything() {
-    let mut tracking = common::masses::tracking();
+    let mut tracking = crate::common::masses::tracking();
     tracking.agents[0].target = Some(along(vec![bounce(1.3), (t() - 1.3).abs_of().smaller(t() * 0.3)]));
     tracking.time.end_s = 6.0;
     has_order_four("target", tracking, 0.02);
@@ -203,7 +201,7 @@ fn a_motion_whose_kinks_cannot_be_told_apart_is_refused() {
         error: TrajectoryError::Kinks { axis, error: KinkError::TooMany },
     };
     assert_eq!(error, wanted("leader", 0));
-    let mut tracking = common::masses::tracking();
+    let mut tracking = crate::common::masses::tracking();
     tracking.agents[0].target = Some(along(vec![t(), many.clone()]));
     assert_eq!(refuse(&tracking), wanted("mass-1", 1));
     // A push is continuous: there the error control is enough.

@@ -1,12 +1,10 @@
 //! Numbers of laws and of their robots out of range: each is refused under the path that it has in a scenario file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::{chains, masses, single, vehicles};
+use crate::common::{chains, masses, single, vehicles};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::law::ParameterBounds;

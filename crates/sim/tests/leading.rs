@@ -1,13 +1,11 @@
 //! An agent of the network that leads the others.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::sync::Arc;
 
-use common::chains;
-use common::following::{DESIGNS, led_by_agent, masses, observes};
-use common::{column, run, sampled};
+use crate::common::chains;
+use crate::common::following::{DESIGNS, led_by_agent, masses, observes};
+use crate::common::{column, run, sampled};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leading};

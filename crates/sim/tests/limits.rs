@@ -1,13 +1,11 @@
 //! Enforced limits: torques keep to them, and the Lyapunov balance counts what they take away.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-mod common;
-
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::{axes, balance_residual, column, run, setup, silent};
+use crate::common::{axes, balance_residual, column, run, setup, silent};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks};
 use forwardstep_sim::push::{Course, Effect, Function, Push};

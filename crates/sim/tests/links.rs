@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod cases;
-
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use cases::{cases, setup};
+use crate::cases::{cases, setup};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;

@@ -1,11 +1,9 @@
 //! Delays and switching signals of one's own: the same bits as ours where they compute the same, and no lie goes unseen.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::{consensus_of_masses, sampled, switching};
+use crate::common::{consensus_of_masses, sampled, switching};
 use forwardstep_core::Scalar;
 use forwardstep_sim::delay::{
     Arrivals, Basis, Delay, DelayFault, DelayFunction, DelayPiece, Known, Loss, PacketLink, SawTooth, Sinusoid,

@@ -1,10 +1,8 @@
 //! A point mass without velocity, (a7)–(a9), and many of them: the identity of the proof along real runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::masses::{consensus, tracking};
-use common::{assert_first_order, balance_residual, column, last, run, truth};
+use crate::common::masses::{consensus, tracking};
+use crate::common::{assert_first_order, balance_residual, column, last, run, truth};
 use forwardstep_sim::Signal;
 
 #[test]

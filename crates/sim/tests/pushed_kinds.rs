@@ -2,16 +2,14 @@
 //! no sense for a kind is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use common::chains::{adaptive, cascades, derivatives, linearising, pure_feedback, tracking};
-use common::masses;
-use common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
-use common::vehicles::{ADAPTIVE, DIFFERENTIABLE, rotorcraft, three, vehicle};
-use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled};
+use crate::common::chains::{adaptive, cascades, derivatives, linearising, pure_feedback, tracking};
+use crate::common::masses;
+use crate::common::single::{anthropomorphic, craft, half_a_turn, planar, targets};
+use crate::common::vehicles::{ADAPTIVE, DIFFERENTIABLE, rotorcraft, three, vehicle};
+use crate::common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::{Axes, LinkPoint, Uncertain};

@@ -3,9 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
-mod cases;
-mod common;
-
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
@@ -32,7 +29,7 @@ const HZ: f64 = 512.0;
 
 /// Digital control, every sample recorded.
 fn at_samples(mut setup: Setup, end_s: f64) -> Setup {
-    setup = common::sampled(setup, HZ);
+    setup = crate::common::sampled(setup, HZ);
     setup.time.end_s = end_s;
     setup.time.record_every_s = 1.0 / HZ;
     setup
@@ -203,11 +200,11 @@ fn assert_same_bits(name: &str, setup: &Setup) -> Counts {
 
 #[test]
 fn digest_every_kind_has_the_bits_of_the_simulator_when_it_is_driven_from_outside() {
-    for (name, setup) in common::every_kind() {
+    for (name, setup) in crate::common::every_kind() {
         let counts = assert_same_bits(name, &at_samples(setup.clone(), 2.0));
         assert_eq!(counts.late, 0, "{name}");
         // At a rate that binary numbers cannot write, with noise.
-        let mut setup = common::sampled(setup, 500.0);
+        let mut setup = crate::common::sampled(setup, 500.0);
         setup.time = TimeSpan { end_s: 1.0, record_every_s: 0.002, record_at: forwardstep_sim::RecordAt::Intervals };
         let control = setup.control.as_mut().unwrap();
         let measured = |agent: &AgentSetup| agent.interface().unwrap().measures_velocity;
@@ -220,8 +217,8 @@ fn digest_every_kind_has_the_bits_of_the_simulator_when_it_is_driven_from_outsid
 #[test]
 fn digest_robots_with_encoders_and_limits_have_the_bits_of_the_simulator() {
     let mut late = 0;
-    for case in cases::cases() {
-        let mut setup = at_samples(cases::setup(&case), 1.5);
+    for case in crate::cases::cases() {
+        let mut setup = at_samples(crate::cases::setup(&case), 1.5);
         let control = setup.control.as_mut().unwrap();
         control.sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 40.0 };
         control.sensors.position_quantum = 1e-6;
@@ -235,9 +232,9 @@ fn digest_robots_with_encoders_and_limits_have_the_bits_of_the_simulator() {
 
 #[test]
 fn digest_a_tree_of_links_has_the_bits_of_the_simulator() {
-    let mut setup = common::single::anthropomorphic(Uncertain::Tool);
+    let mut setup = crate::common::single::anthropomorphic(Uncertain::Tool);
     setup.reference = Arc::new(Consensus);
-    setup.network = common::switching();
+    setup.network = crate::common::switching();
     let first = &mut setup.agents[0];
     let estimate_start = first.robot.theta.iter().map(|theta| 0.8 * theta).collect();
     let (damping, adaptation) = (Gain::Bandwidth(20.0), Gain::Bandwidth(3.0));
@@ -254,7 +251,7 @@ fn digest_a_tree_of_links_has_the_bits_of_the_simulator() {
 
 #[test]
 fn digest_packets_by_a_nonlinear_protocol_have_the_bits_of_the_simulator() {
-    let mut setup = at_samples(common::chains::adaptive(), 2.0);
+    let mut setup = at_samples(crate::common::chains::adaptive(), 2.0);
     let link = PacketLink {
         first_s: 0.0,
         every_s: 2.0 / HZ,
@@ -264,7 +261,7 @@ fn digest_packets_by_a_nonlinear_protocol_have_the_bits_of_the_simulator() {
         most_in_a_row: None,
         seed: 5,
     };
-    setup.network = common::switching();
+    setup.network = crate::common::switching();
     setup.network.delays = vec![Delay::new(link.trace((0, 1), 2.0).unwrap())];
     setup.network.coupling = Coupling::Saturated { limit: 0.05 };
     let counts = assert_same_bits("packets", &setup);
@@ -273,7 +270,7 @@ fn digest_packets_by_a_nonlinear_protocol_have_the_bits_of_the_simulator() {
 
 #[test]
 fn alloc_sampled_controllers_and_mailboxes_never_allocate() {
-    for (name, setup) in common::every_kind() {
+    for (name, setup) in crate::common::every_kind() {
         let (_, log) = logged(&at_samples(setup.clone(), 0.25));
         for (agent, mut recipe) in recipes(&setup).unwrap().into_iter().enumerate() {
             for by_itself in [false, true] {
@@ -303,7 +300,7 @@ fn alloc_sampled_controllers_and_mailboxes_never_allocate() {
 
 #[test]
 fn controllers_measure_what_their_laws_read_and_nothing_else() {
-    let kinds = common::every_kind();
+    let kinds = crate::common::every_kind();
     let kind = |name: &str| kinds.iter().find(|(kind, _)| *kind == name).unwrap().1.clone();
     let measures = |name: &str| controllers(&kind(name))[0].measures().to_vec();
     assert_eq!(measures("spacecraft"), [(Signal::Position, 4)]);
@@ -324,7 +321,8 @@ fn controllers_measure_what_their_laws_read_and_nothing_else() {
 
 #[test]
 fn limits_that_are_enforced_are_those_of_the_recipe_with_and_without_digital_control() {
-    let (_, mut setup) = common::every_kind().into_iter().find(|(name, _)| *name == "tip-of-a-planar-arm").unwrap();
+    let (_, mut setup) =
+        crate::common::every_kind().into_iter().find(|(name, _)| *name == "tip-of-a-planar-arm").unwrap();
     assert_eq!(recipe(&setup, 0).unwrap().limits, None);
     let own = &mut setup.agents[0];
     own.enforce_limits = true;
@@ -332,7 +330,7 @@ fn limits_that_are_enforced_are_those_of_the_recipe_with_and_without_digital_con
     own.robot.axes[1].effort_limit = Some(20.0);
     let rate = vec![f64::INFINITY; 2];
     assert_eq!(recipe(&setup, 0).unwrap().limits, Some(Limits { torque: vec![50.0, 20.0], rate }));
-    let mut setup = common::sampled(setup, 100.0);
+    let mut setup = crate::common::sampled(setup, 100.0);
     let actuators = &mut setup.control.as_mut().unwrap().actuators;
     actuators.torque_limit = Some(vec![30.0, 30.0]);
     actuators.torque_rate_limit = Some(vec![1e3, 2e3]);
@@ -345,7 +343,7 @@ fn limits_that_are_enforced_are_those_of_the_recipe_with_and_without_digital_con
 #[test]
 fn an_agent_that_starts_by_itself_comes_to_the_same_state_as_one_that_was_told() {
     // Without noise and delay the first sample holds all that the start was computed from.
-    for (name, setup) in common::every_kind() {
+    for (name, setup) in crate::common::every_kind() {
         let setup = at_samples(setup, 0.25);
         let (_, log) = logged(&setup);
         let mut told = Replay::new(&setup, &log);
@@ -364,7 +362,7 @@ fn an_agent_that_starts_by_itself_comes_to_the_same_state_as_one_that_was_told()
 
 #[test]
 fn a_law_that_would_divide_by_nothing_fails_with_its_reason() {
-    let (_, setup) = common::every_kind().into_iter().find(|(name, _)| *name == "vehicles-adaptive").unwrap();
+    let (_, setup) = crate::common::every_kind().into_iter().find(|(name, _)| *name == "vehicles-adaptive").unwrap();
     let mut recipe = recipe(&setup, 0).unwrap();
     recipe.safe = SafeCommand::Values(vec![5.0, 0.0, 0.0, 0.0]);
     let StartState::State(mut state) = recipe.start.clone() else { panic!("as in the run") };

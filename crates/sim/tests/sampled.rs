@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod cases;
-
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use cases::{cases, setup};
+use crate::cases::{cases, setup};
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter};
 use forwardstep_core::law::SlotineLi;

@@ -1,9 +1,7 @@
 //! Surface ships under (6)–(7): the balance of the proof, agreement, and the same motion in the axes of the body.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
-use common::{balance_residual, column, last, run, switching};
+use crate::common::{balance_residual, column, last, run, switching};
 use forwardstep_core::Gain;
 use forwardstep_sim::{Adaptive, AgentSetup, Known, RobotSetup, Setup, Signal};
 

@@ -2,13 +2,11 @@
 //! along real runs, sampled runs, and what ends a run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::single::{anthropomorphic, craft, filtered_craft, half_a_turn, planar, targets};
-use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
+use crate::common::single::{anthropomorphic, craft, filtered_craft, half_a_turn, planar, targets};
+use crate::common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::Uncertain;

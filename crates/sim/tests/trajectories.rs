@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod cases;
-
 use std::ops::ControlFlow;
 
-use cases::{Case, ReferenceCase, cases, setup};
+use crate::cases::{Case, ReferenceCase, cases, setup};
 use forwardstep_sim::{Ending, Method, Outcome, Setup, Signal, simulate};
 
 fn run(setup: &Setup) -> Outcome {

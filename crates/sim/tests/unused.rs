@@ -1,13 +1,11 @@
 //! What a kind of system does not read is refused, with the reason, and never accepted in silence.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use forwardstep_sim::reference::{Backstepping, Consensus};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::{every_kind, masses, sampled, single, switching, vehicles};
+use crate::common::{every_kind, masses, sampled, single, switching, vehicles};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_sim::{
@@ -61,7 +59,7 @@ fn lambda_is_read_beside_the_adaptive_law() {
 fn lagrangian() -> Setup {
     let mut setup = masses::consensus(2);
     setup.agents.truncate(1);
-    setup.network = common::silent(1);
+    setup.network = crate::common::silent(1);
     setup.agents[0].law = Arc::new(Adaptive {
         damping: Gain::Number(5.0),
         adaptation: Gain::Number(5.0),
@@ -142,7 +140,7 @@ fn agents_with_targets_of_their_own_hear_nobody() {
     let mut other = setup.agents[0].clone();
     other.name = "other".into();
     setup.agents.extend([other.clone(), AgentSetup { name: "third".into(), ..other }]);
-    setup.network = common::silent(3);
+    setup.network = crate::common::silent(3);
     assert!(outcome(&setup).is_ok());
     setup.network = switching();
     assert!(matches!(outcome(&setup), Err(SetupError::UnusedEdges { edges: 4 })));

@@ -1,14 +1,14 @@
 //! Vehicles with one thrust, (44)–(58), and rotorcraft: the identities of the proofs along real runs, agreement, formations.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-mod common;
-
 use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::vehicles::{ADAPTIVE, BY_ACCELERATION, DIFFERENTIABLE, G, by_acceleration, rotorcraft, three, vehicle};
-use common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
+use crate::common::vehicles::{
+    ADAPTIVE, BY_ACCELERATION, DIFFERENTIABLE, G, by_acceleration, rotorcraft, three, vehicle,
+};
+use crate::common::{RTOL, assert_first_order, balance_residual, column, last, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::plant::Rotors;

@@ -12,8 +12,8 @@ use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Path;
 use forwardstep_sim::{Method, Setup, Signal, simulate};
 
-use super::common::{column, edge};
 use super::{answer, led_by_agent, mass, setup, wave};
+use crate::common::{column, edge};
 
 /// The report on (110) over two edges with these delays.
 fn late(delays: [Delay; 2], weight: f64) -> Report {

@@ -14,9 +14,9 @@ use forwardstep_sim::reference::{Backstepping, PureIntegral};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Control, Exchange, Known, Method, Setup, Signal, Solver};
 
-use super::common::kinds::blind_mass;
-use super::common::{arm, column, edge, run, setup};
 use super::two_arms;
+use crate::common::kinds::blind_mass;
+use crate::common::{arm, column, edge, run, setup};
 
 fn ring(agents: usize, order: usize, exchange: Exchange, delay_s: f64) -> Setup {
     let edges = (0..agents).map(|to| edge((to + agents - 1) % agents, to, 1.0, 0)).collect();

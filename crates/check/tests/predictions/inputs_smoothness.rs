@@ -13,9 +13,9 @@ use forwardstep_sim::{
     Start, ThrustKind, input_orders, simulate_jumps,
 };
 
+use super::smoothness::{arms, compare, refused, roots};
 use crate::common::kinds::{blind_mass, cascade, chain, rest_at, spacecraft, tracking, vehicle};
 use crate::common::{arm, noise};
-use crate::smoothness::{arms, compare, refused, roots};
 
 /// The network of [`arms`] with three of these in it, each elsewhere.
 fn three(order: usize, agent: &dyn Fn() -> AgentSetup) -> Setup {

@@ -12,7 +12,7 @@ use forwardstep_sim::reference::{
 use forwardstep_sim::system::{Declaration, Known as Knowledge};
 use forwardstep_sim::{AgentSetup, Assembly, Exchange, Setup, SetupError, Signal};
 
-use crate::smoothness::{arms, compare};
+use super::smoothness::{arms, compare};
 
 /// ż = y − 0.5 q + 0.2 and ẏ = −2 y − q̇ − Σ_j w_ij (q − q_j) + 0.3; ż is not affine if asked.
 #[derive(Clone, Copy, Debug)]

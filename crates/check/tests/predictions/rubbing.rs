@@ -18,9 +18,9 @@ use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{Adaptive, AgentSetup, Axis, AxisUnit, Known, Network, RobotSetup, Setup, simulate_watched};
 
-use super::common::run;
 use super::course::predicted;
 use super::{bound, sine};
+use crate::common::run;
 
 const FRICTION: f64 = 3.0;
 const WIDTH: f64 = 0.05;

@@ -11,8 +11,8 @@ use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::{Consensus, PureIntegral, ReferenceDynamics};
 use forwardstep_sim::{Adaptive, Control, Exchange, Known, Sensors, Setup, Signal, Start};
 
-use super::common::{column, edge, run};
 use super::{DAMPING, arm, mass, ring};
+use crate::common::{column, edge, run};
 
 /// Roots that differ but for the first, as order and agent say.
 fn roots(order: usize, agent: usize) -> Vec<f64> {

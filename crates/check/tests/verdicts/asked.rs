@@ -14,9 +14,9 @@ use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{Exchange, Setup};
 
-use super::common::kinds::{alone, blind_mass, chain, rest_at, tracking};
-use super::common::{edge, masses};
 use super::{chain_of_three, constant, control, led, pair, with_weights};
+use crate::common::kinds::{alone, blind_mass, chain, rest_at, tracking};
+use crate::common::{edge, masses};
 
 fn about(setup: &Setup, id: Id) -> Vec<Hypothesis> {
     check(setup).hypotheses.into_iter().filter(|hypothesis| hypothesis.id == id).collect()

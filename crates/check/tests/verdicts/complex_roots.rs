@@ -12,9 +12,9 @@ use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Exchange, Setup, ThrustKind};
 
-use super::common::kinds::{alone, blind_mass, chain, rest_at, tracking, vehicle};
-use super::common::{arm, edge, masses};
 use super::led;
+use crate::common::kinds::{alone, blind_mass, chain, rest_at, tracking, vehicle};
+use crate::common::{arm, edge, masses};
 
 fn with(real: &[f64], pairs: &[[f64; 2]]) -> RootSet {
     let pairs = pairs.iter().map(|[real, imaginary]| RootPair { real: *real, imaginary: *imaginary });

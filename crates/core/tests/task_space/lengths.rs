@@ -3,8 +3,8 @@
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, Tree, Uncertain};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
 
-use super::common::random::{Random, inertia_of};
 use super::tip;
+use crate::common::random::{Random, inertia_of};
 
 /// A chain of three joints whose axes are often parallel, and whose frames are often not turned.
 fn orderly(random: &mut Random) -> Vec<LinkSpec> {

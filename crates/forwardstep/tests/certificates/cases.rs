@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use super::support::folder;
 use super::{certified, changed, checked, judged, python, root};
+use crate::support::folder;
 
 fn case(name: &str) -> String {
     fs::read_to_string(root().join(format!("checker/cases/{name}"))).unwrap()

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use super::support::folder;
 use super::{certified, changed, file_of, judged, outcome_beside, python, root};
+use crate::support::folder;
 
 #[test]
 fn only_an_uncertain_tool_is_certified_to_stay_out_of_the_regressor() {

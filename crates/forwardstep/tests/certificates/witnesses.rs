@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use super::support::folder;
 use super::{certified, changed, checked, judged, proof, root};
+use crate::support::folder;
 
 fn violated(text: &str, id: &str, kind: &str) {
     assert_eq!(judged(text, id), ("violated".to_owned(), "accepted".to_owned()), "{id}: {text}");

@@ -7,8 +7,8 @@ use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 use forwardstep::sim::{Moment, RecordAt, simulate_moments};
 use serde_json::Value;
 
+use super::{TWO, with};
 use crate::support::{folder, forwardstep, stderr, stdout};
-use crate::{TWO, with};
 
 #[test]
 fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {

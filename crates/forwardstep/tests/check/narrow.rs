@@ -2,8 +2,8 @@
 
 use std::fs;
 
+use super::{answered, with};
 use crate::support::{folder, forwardstep, stderr, stdout};
-use crate::{answered, with};
 
 /// Two masses that hear each other, and more.
 fn masses(more: &str) -> String {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::QUICK;
-use super::support::{folder, forwardstep, stdout};
+use crate::support::{folder, forwardstep, stdout};
 
 /// Twelve carts, every other at the other end.
 const RING: &str = r#"format = 2

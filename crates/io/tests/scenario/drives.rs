@@ -5,7 +5,7 @@ use forwardstep_io::scenario::{Scenario, ScenarioError};
 use forwardstep_sim::Adaptive;
 use miette::Diagnostic;
 
-use crate::read;
+use super::read;
 
 const ONE: &str = r#"
 format = 2

@@ -135,7 +135,7 @@ fn more_edges_than_fit_are_refused() {
 
 /// The sound scenario with the edges of a table beside it.
 fn tabled(table: &str) -> (TempDir, Result<Scenario, ScenarioError>) {
-    super::seeds::keep("csv", table);
+    crate::seeds::keep("csv", table);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("edges.csv"), table).unwrap();
     let scenario = beside("edges.csv", folder.path());

@@ -171,7 +171,7 @@ fn one_edge_is_one_link() {
 fn logged(log: &str) -> Result<Scenario, ScenarioError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("radio.csv"), log).unwrap();
-    super::seeds::keep("csv", log);
+    crate::seeds::keep("csv", log);
     let text =
         replayed("radio.csv").replace(", { from = \"cart-4\", to = \"cart-2\", delay.log.file = \"radio.csv\" }", "");
     beside(&text, folder.path())
@@ -409,7 +409,7 @@ fn every_mistake_in_a_table_of_draws_is_reported_at_its_place() {
             std::fs::copy(folder.path().join("run").join(name), own.path().join(name)).unwrap();
         }
         std::fs::write(own.path().join(file), table).unwrap();
-        super::seeds::keep("csv", table);
+        crate::seeds::keep("csv", table);
         let found = beside(&from_tables(DRAWN), own.path()).err().map(|error| error.to_string()).unwrap_or_default();
         if !found.ends_with(line) {
             wrong.push(format!("{table:?}: {found:?}"));

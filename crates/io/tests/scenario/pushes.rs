@@ -413,7 +413,7 @@ fn every_mistake_in_a_table_over_time_is_reported_at_its_place() {
     as_stated(TABLES.iter().map(|(table, line, help)| {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("push.csv"), table).unwrap();
-        super::seeds::keep("csv", table);
+        crate::seeds::keep("csv", table);
         ((*table).to_owned(), beside(folder.path(), ""), *line, *help)
     }));
 }

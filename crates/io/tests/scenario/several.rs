@@ -137,7 +137,7 @@ fn of_any_two_mistakes_both_are_told_and_nothing_else() {
 
 /// All that is said of [`SOUND`] with edges from this table, without its folder.
 fn of_table(table: &str) -> Vec<String> {
-    super::seeds::keep("csv", table);
+    crate::seeds::keep("csv", table);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("edges.csv"), table).unwrap();
     let text = SOUND.replace("edges = [[\"arm-1\", \"arm-2\"]]", "edges.csv.file = \"edges.csv\"");

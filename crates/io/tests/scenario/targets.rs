@@ -28,7 +28,7 @@ fn beside(folder: &Path, text: &str) -> Result<Scenario, ScenarioError> {
 fn tabled(text: &str, table: &str) -> Result<Scenario, ScenarioError> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("slew.csv"), table).unwrap();
-    super::seeds::keep("csv", table);
+    crate::seeds::keep("csv", table);
     beside(folder.path(), text)
 }
 

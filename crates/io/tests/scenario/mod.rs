@@ -18,8 +18,6 @@ mod mutated;
 mod pushes;
 mod quantities;
 mod ranges;
-#[path = "../support/seeds.rs"]
-mod seeds;
 mod several;
 mod shipped;
 mod spacecraft;
@@ -82,7 +80,7 @@ fn changed(from: &str, to: &str) -> String {
 }
 
 fn read(text: &str) -> Result<Scenario, ScenarioError> {
-    seeds::keep("scenario", text);
+    crate::seeds::keep("scenario", text);
     read_scenario("test", &SourceText::new("test.toml", text), None)
 }
 

@@ -9,8 +9,6 @@ mod pinocchio;
 mod poses;
 mod refusals;
 mod robots;
-#[path = "../support/seeds.rs"]
-mod seeds;
 
 use forwardstep_io::{Problem, SourceText, UrdfOptions, UrdfRobot, read_urdf};
 
@@ -41,7 +39,7 @@ fn read(text: &str) -> Result<UrdfRobot, String> {
 
 /// The robot, or the error and its help as the user sees them.
 fn read_with(text: &str, options: &UrdfOptions) -> Result<UrdfRobot, String> {
-    seeds::keep("urdf", text);
+    crate::seeds::keep("urdf", text);
     read_urdf(&SourceText::new("r.urdf", text), options).map_err(|error| match error.problem.help() {
         Some(help) => format!("{error}\n  help: {help}"),
         None => error.to_string(),

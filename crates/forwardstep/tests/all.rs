@@ -1,0 +1,30 @@
+//! What the program does for people, as one program: each file is a module of it, so that what they share is compiled once.
+#![cfg(feature = "program")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
+
+mod architecture;
+mod book;
+mod bounded;
+mod certificates;
+mod check;
+mod cli;
+mod compare;
+mod completions;
+mod documents;
+mod examples;
+mod falsify;
+mod hostile;
+mod hypotheses;
+mod journal;
+mod meshes;
+mod new;
+mod own_delay;
+mod own_kind;
+mod own_reference;
+mod pushes;
+mod report;
+mod robot;
+mod shipped;
+mod stepped;
+mod support;
+mod upgrade;
