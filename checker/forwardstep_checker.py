@@ -605,9 +605,8 @@ def multiple(tree):
 def period(tree):
     def rates(part):
         if part[0] == "f" and part[1] in ("sin", "cos") and has_variable(part[2]):
-            slope = derivative(part[2])
-            decided(not has_variable(slope), "an angle is not linear in t")
-            return [multiple(slope)]
+            slope = attempt(derivative, part[2]) or ("t",)
+            if not has_variable(slope): return [multiple(slope)]
         decided(part[0] not in ("t", "state", "points"), "t stands outside of sines and cosines")
         return [rate for inner in parts_of(part) for rate in rates(inner)]
 
@@ -1537,7 +1536,7 @@ def formulas(claim, node):
         within = enclosed(entry, tree, claim.scenario.end_s)
         # A formula that repeats, and has a value everywhere, is uniformly continuous.
         repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1]
-        uniform = lasts(entry) and (repeats or steady(tree, last))
+        uniform = lasts(entry) and (repeats or steady(resolved(tree, END), last))
         decided(uniform or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
         found[text] = *within, uniform
     return found
@@ -1741,8 +1740,8 @@ def needed(agent, polynomial):
 def motions_of(claim):
     if claim.id == "bounded-leader":
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
-        return [(claim.scenario.motion, 1, 3)]
-    return [(agent.target or [], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
+        return [([resolved(tree, FOR_EVER) for tree in claim.scenario.motion], 1, 3)]
+    return [([resolved(tree, FOR_EVER) for tree in agent.target or []], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
 
 # Curves through points are polynomials on finitely many pieces and constant elsewhere; derivatives of formulas are enclosed, on
 # [0, ∞) at once or on the stretch that is stated.

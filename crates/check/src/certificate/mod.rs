@@ -19,6 +19,7 @@ mod numbers;
 mod producers;
 mod proof;
 mod ratio;
+mod resolved;
 mod routh;
 mod shares;
 mod slopes;

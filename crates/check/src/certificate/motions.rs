@@ -12,6 +12,7 @@ use super::numbers::sum;
 use super::producers::Claim;
 use super::proof::{Enclosure, Proof, Range};
 use super::ratio::Ratio;
+use super::resolved::resolved;
 use super::slopes::{self, on_piece};
 use super::zeros::vanishing;
 use crate::kinds::start_attitude::scalar_squared;
@@ -51,7 +52,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     for (trajectory, lowest) in motions {
         // What goes through points is bounded whatever the points are.
         for course in trajectory.paths().iter().map(Course::of).filter(|course| course.formula().is_some()) {
-            let trees = slopes::derivatives(course.formula()?, order);
+            let trees = slopes::derivatives(&resolved(course.formula()?), order);
             if trees.len() <= order {
                 return None;
             }
@@ -103,7 +104,7 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let enclosure = |path: &Path| -> Option<Enclosure> {
         let course = Course::of(path);
         if let Some(formula) = course.formula() {
-            let sum = weighted(formula, &drive)?;
+            let sum = weighted(&resolved(formula), &drive)?;
             let slope = slopes::slope(&sum);
             // What is multiplied here is rounded, and exact for a checker.
             let enclose = |t: Interval| {

@@ -41,6 +41,21 @@ fn what_settles_or_is_made_of_steady_parts_is_certified_for_ever() {
     }
 }
 
+/// What `min`, `max` and `abs` choose for ever has no kink, and what is made of a wave repeats as it does.
+#[test]
+fn kinks_that_are_none_and_waves_of_waves_are_certified() {
+    for motion in ["min(2, 1/(1 + t))", "max(sin(t), 2 + cos(t))", "abs(2 + sin(t))", "sin(sin(t))^2"] {
+        let text = led(&format!("formulas = [\"{motion}\"]"), "9");
+        accepted(&text, "bounded-leader", "holds");
+        accepted(&text, "sign-gain", "holds");
+    }
+    for delay in
+        ["0.2 + 0.1*sin(log(2 + abs(t^2)))", "0.2 + 0.1*sin(min(sqrt(1 + t^2), 1.2))", "0.2 + 0.1*abs(sin(sin(t)))"]
+    {
+        accepted(&delayed(delay), "bounded-delays", "holds");
+    }
+}
+
 #[test]
 fn delays_that_swing_ever_wider_are_refuted() {
     for delay in ["abs(t*sin(t))", "abs(t*cos(t))", "t*abs(sin(t))"] {
