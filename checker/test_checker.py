@@ -689,6 +689,8 @@ class FalseProofs(unittest.TestCase):
         self.rejected("theorem-2", "bounded-delays", "is exceeded", lambda entry: entry["proof"].update(bound_s="0.49999999999999999"))
         # The amplitude counts: 0.3 + 0.25 exceeds a half, of which no other delay here is the reason.
         self.rejected("theorem-2", "bounded-delays", "is exceeded", lambda entry: None, ("mean_s = 0.25", "mean_s = 0.3"))
+        swings = ("mean_s = 0.25, amplitude_s = 0.25", "mean_s = 0.2, amplitude_s = 0.3")
+        self.rejected("theorem-2", "bounded-delays", "may be negative", lambda entry: None, swings)
         negative = ('"0.2 + 0.1*sin', '"0.2 + 0.3*sin')
         within = lambda entry: entry["proof"].update(bound_s="1", enclosures=[{**entry["proof"]["enclosures"][0], "within": ["-1", "1"]}])  # noqa: E731
         self.rejected("formulas", "bounded-delays", "become negative", within, negative)
@@ -749,6 +751,8 @@ class FalseProofs(unittest.TestCase):
         self.accepted("without-velocity", "position-only-gains", lambda entry: None, *true)
         self.rejected("without-velocity", "position-only-gains", "wrong mass", lambda entry: None, true[0])
         self.rejected("swarm-tracking", "swarm-coupling", "are not", lambda entry: None, ("coupling = 12", "coupling = 11"))
+        at_zero = ("roots_per_s = [1.0, 1.0]", "roots_per_s = [0.0, 2.0]")
+        self.rejected("swarm-tracking", "swarm-coupling", "is for real roots", lambda entry: None, at_zero)
 
     def test_joints_need_inertia(self):
         robot = (HERE.parent / "crates" / "io" / "robots" / "ur5e.urdf").read_text()
@@ -926,6 +930,28 @@ class FalseProofs(unittest.TestCase):
         self.accepted("saturated-coupling", "input-factor", there("-1.9999", "0"), state)
         self.rejected("saturated-coupling", "input-factor", "no factor below", there("-1.99", "0"), state)
         self.rejected("saturated-coupling", "input-factor", "no factor below", there(), state)
+
+    def test_matrices_of_inputs_are_bounded_from_below(self):
+        """Of two rows |A|² = σ₁² + σ₂² and |det A| = σ₁ σ₂ give the smaller of the singular values."""
+        draw = random.Random(5)
+        shown = 0
+        for case in range(200):
+            rows = [[draw.randint(-6, 6) for _ in range(2)] for _ in range(2)]
+            norm, det = sum(x * x for row in rows for x in row), rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
+            least = math.sqrt(max(norm - math.sqrt(max(norm**2 - 4 * det**2, 0)), 0) / 2)
+            found, most = checker.regular([[str(x) for x in row] for row in rows])
+            self.assertLessEqual(float(found), least + 1e-9, rows)
+            self.assertEqual(most, math.inf)
+            # The determinant alone shows |det A|/|A|.
+            if det: self.assertGreaterEqual(float(found), abs(det) / math.sqrt(norm) - 1e-9, rows)
+            shown += found > 0
+        self.assertGreater(shown, 150)
+        # Without a bound of its entries by the discs alone, and not at all where the diagonal is not large enough.
+        self.assertEqual(checker.regular([["3 + x^2", "1"], ["-1", "2"]])[0], 2)
+        self.assertLess(checker.regular([["1 + x^2", "2"], ["2", "2"]])[0], 0)
+        self.assertAlmostEqual(float(checker.regular([["0", "2", "0"], ["0", "0", "2"], ["2", "0", "0"]])[0]), 8 / 12, 9)
+        for rows in ([["1", "0"], ["0"]], [["1"], ["1"]]):
+            self.assertRaises(checker.Meaningless, checker.regular, rows)
 
     def test_inertias(self):
         arm = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }"
@@ -1313,6 +1339,11 @@ class FalseProofs(unittest.TestCase):
         rootless = ("reference.consensus = { roots_per_s = [1.5] }\n", "")
         self.rejected("framework", "real-roots", "has no roots", lambda entry: None, rootless)
 
+    def test_orders_of_their_own_need_roots_of_everybody(self):
+        agents = lambda *roots: type("Scenario", (), {"agents": [type("Agent", (), {"roots": own}) for own in roots]})  # noqa: E731
+        for roots, right in ((([1],), True), (([1], [1, 2]), True), (([1], []), False)):
+            self.assertEqual(checker.TEXT["own-orders", "text"](agents(*roots), []), right, roots)
+
     def test_each_root_of_everybody_counts(self):
         """Also one that stands behind a larger first root."""
         for other, bound in (("-3", "1"), ("0.5", "1"), ("0.5", "0.51")):
@@ -1342,6 +1373,17 @@ class FalseProofs(unittest.TestCase):
         weaker["hypotheses"][0]["answer"] = "holds on [0, end]"
         found = checker.check(json.dumps(weaker), place_of("first-order").read_text(), SCENARIOS, digests=False)
         self.assertIn(("agreement", checker.ACCEPTED), [(one[0], one[3]) for one in found])
+        # A tree that is not shown is none, and no graph of several is that of a fixed network: whom arm-k hears counts in one of them.
+        weaker["hypotheses"][0].update(answer="not shown")
+        del weaker["hypotheses"][0]["proof"]
+        found = checker.check(json.dumps(weaker), place_of("first-order").read_text(), SCENARIOS, digests=False)
+        self.assertIn("is of a network whose spanning tree is not shown", [one[4] for one in found])
+        text, certificate = place_of("theorem-2").read_text(), json.loads((self.folder / "theorem-2.json").read_text())
+        graph = checker.Scenario(text, SCENARIOS).graphs[0]
+        alone = min(set(range(6)) - {edge.to for edge in graph})
+        certificate["agreement"] = {"influence": [[f"arm-{k + 1}", str(int(k == alone))] for k in range(6)]}
+        found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+        self.assertIn("is of no fixed network", [one[4] for one in found])
         # Of two closed classes each has a null vector, and no value is agreed upon.
         text = place_of("cut").read_text()
         text = text[:text.index("[[network.phases]]")] + 'edges = [["mass-1", "mass-2"], ["mass-3", "mass-4"]]\n'

@@ -133,6 +133,15 @@ mod tests {
     }
 
     #[test]
+    fn a_vector_shows_it_where_it_is_positive_and_is_taken_to_what_is_positive_by_more_than_rounding() {
+        let shows = |shift: f64, v: f64| ShiftedLaplacian::new(1, &[(0, None, 1.0)], shift).unwrap().shows(&[v]);
+        assert!(shows(0.5, 1.0) && shows(1.0 - 1e-14, 1.0));
+        assert!(!shows(1.0 - 1e-16, 1.0) && !shows(1.0, 1.0) && !shows(2.0, 1.0));
+        // Taken to what is positive by what is negative definite.
+        assert!(!shows(2.0, -1.0) && !shows(0.5, 0.0));
+    }
+
+    #[test]
     fn a_hundred_thousand_followers_are_judged() {
         let n = 100_000;
         let ring = (0..n).flat_map(|k| [(k, Some((k + 1) % n), 1.0), ((k + 1) % n, Some(k), 1.0)]);

@@ -69,18 +69,20 @@ fn regress_a_push_that_comes_while_all_rest_is_met() {
     }
 }
 
-/// Its kinks are too many to be told apart, so that values decide.
+/// Its kinks are too many to be told apart, so that values decide. A ripple that error control sees in long steps, which amplify what
+/// is left of it, would keep them short; and a stage may stand within the bump by chance, but not wherever it comes.
 #[test]
 fn a_push_with_more_kinks_than_can_be_told_apart_is_met_where_it_is_no_narrower_than_a_step_is_long() {
-    let ripple = (Expression::variable(0) * 1e5).sin_of().abs_of() * 1e-20;
-    for width in [5.0, 2.0] {
-        let setup = pushed(pair(0.0, 200.0), bump(20.0 / width, 120.3, width) + ripple.clone());
+    let ripple = (Expression::variable(0) * 1e5).sin_of().abs_of() * 1e-200;
+    let cases = [5.0, 2.0].into_iter().flat_map(|width| [120.0, 130.0, 140.0, 150.0].map(|at| (width, at)));
+    for (width, at) in cases {
+        let setup = pushed(pair(0.0, 200.0), bump(20.0 / width, at, width) + ripple.clone());
         let mut fine = setup.clone();
         fine.solver.max_step_s = Some(0.1 * width);
         let [found, fine] = [setup, fine].map(|setup| column(&run(&setup), 0, Signal::Position, 0).to_vec());
         let error = found.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let effect = fine.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
-        assert!(effect > 1e-3 && error < 1e-5 * (1.0 + effect), "{width} s: off by {error:e}, effect {effect:e}");
+        assert!(effect > 1e-3 && error < 1e-5 * (1.0 + effect), "{width} s at {at}: {error:e} of {effect:e}");
     }
 }
 
