@@ -1738,10 +1738,11 @@ def needed(agent, polynomial):
 
 # For each motion of a claim its axes, and the lowest and the highest derivative that has to be bounded.
 def motions_of(claim):
+    paths = lambda trees: [resolved(tree, FOR_EVER) for tree in trees or []]
     if claim.id == "bounded-leader":
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
-        return [([resolved(tree, FOR_EVER) for tree in claim.scenario.motion], 1, 3)]
-    return [([resolved(tree, FOR_EVER) for tree in agent.target or []], 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
+        return [(paths(claim.scenario.motion), 1, 3)]
+    return [(paths(agent.target), 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
 
 # Curves through points are polynomials on finitely many pieces and constant elsewhere; derivatives of formulas are enclosed, on
 # [0, ∞) at once or on the stretch that is stated.

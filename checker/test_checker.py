@@ -946,10 +946,10 @@ class FalseProofs(unittest.TestCase):
             if det: self.assertGreaterEqual(float(found), abs(det) / math.sqrt(norm) - 1e-9, rows)
             shown += found > 0
         self.assertGreater(shown, 150)
-        # Without a bound of its entries by the discs alone, and not at all where the diagonal is not large enough.
-        self.assertEqual(checker.regular([["3 + x^2", "1"], ["-1", "2"]])[0], 2)
+        # Without a bound of the entries by the discs alone, which show nothing where the diagonal is too small.
+        self.assertEqual(checker.regular([["3 + x^2", "1"], ["-1", "2"]])[0], 1)
         self.assertLess(checker.regular([["1 + x^2", "2"], ["2", "2"]])[0], 0)
-        self.assertAlmostEqual(float(checker.regular([["0", "2", "0"], ["0", "0", "2"], ["2", "0", "0"]])[0]), 8 / 12, 9)
+        self.assertAlmostEqual(float(checker.regular([["0", "2", "0"], ["0", "0", "2"], ["2", "0", "0"]])[0]), 8 * 2 / 12, 9)
         for rows in ([["1", "0"], ["0"]], [["1"], ["1"]]):
             self.assertRaises(checker.Meaningless, checker.regular, rows)
 

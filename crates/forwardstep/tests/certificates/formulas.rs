@@ -54,6 +54,11 @@ fn kinks_that_are_none_and_waves_of_waves_are_certified() {
     {
         accepted(&delayed(delay), "bounded-delays", "holds");
     }
+    // What is chosen in the end swings ever faster; a kink that is one leaves no jerk.
+    let (answer, _) = super::judged_if_read(&delayed("0.2 + 0.1*sin(max(t^2, 1))"), "bounded-delays").unwrap();
+    assert_ne!(answer, "holds");
+    let kink = led("formulas = [\"min(sin(t), 0.5)\"]", "9");
+    assert!(super::judged_if_read(&kink, "bounded-leader").is_none_or(|(_, outcome)| outcome != "accepted"), "{kink}");
 }
 
 #[test]
