@@ -465,23 +465,24 @@ def damped(tree, t):
     start = max(t[0], n / falls)
     return hull(*(multiply((sign * most,) * 2, multiply((start**n,) * 2, exp_at(-falls * start))) for sign in (-1, 1)))
 
-# The terms of what is a sum once products are multiplied out, each a number and what it is multiplied with.
+# The terms of a sum once products are multiplied out, or those with numbers alone, each a number and what it is multiplied with.
 @once
-def weighed(tree):
+def weighed(tree, out=True):
     kind, one = tree[0], (Fraction(1),) * 2
     if not has_variable(tree): return [(enclose(tree, WHOLE), ONE)]
-    if tree[:2] == ("f", "neg"): return [(minus(x), p) for x, p in weighed(tree[2])]
-    if kind not in ("+", "-", "*", "/"): return [(one, tree)]
-    a, b = weighed(tree[1]), weighed(tree[2]) if kind != "/" or not has_variable(tree[2]) else [(one, ("^", tree[2], Fraction(-1)))]
+    if tree[:2] == ("f", "neg"): return [(minus(x), p) for x, p in weighed(tree[2], out)]
+    if kind not in ("+", "-", "*", "/") or not out and kind in "*/" and all(map(has_variable, tree[1:])): return [(one, tree)]
+    a, b = weighed(tree[1], out), [(one, ("^", tree[2], Fraction(-1)))] if kind == "/" and has_variable(tree[2]) else weighed(tree[2], out)
     if kind in "+-": return a + [(x if kind == "+" else minus(x), q) for x, q in b]
     decided(len(a) * len(b) <= 1000, "a formula has too many terms")
     return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, times(p, q)) for (x, p), (y, q) in itertools.product(a, b)]
 
-# Sines and cosines of one angle together: a sin φ + b cos φ keeps within ± √(a² + b²).
-def swinging(tree, t):
+# Sines and cosines of one angle together: a sin φ + b cos φ keeps within ± √(a² + b²). The rest may tell more where its factors stay
+# together.
+def swinging(tree, t, out=True):
     found, rest = {}, (Fraction(0),) * 2
-    decided(len(weighed(tree)) > 1, "is no sum")
-    for by, part in weighed(tree):
+    decided(len(weighed(tree, out)) > 1, "is no sum")
+    for by, part in weighed(tree, out):
         if part[:2] in (("f", "sin"), ("f", "cos")):
             ratio = quotient(part[2])
             pair_ = found.setdefault(repr([trimmed(of) for of in ratio] if ratio else part[2]), [(Fraction(0),) * 2] * 2)
@@ -497,8 +498,8 @@ def enclose(tree, t):
     if t == FOR_EVER: return hull(enclose(tree, (Fraction(0), Fraction(1))), enclose(tree, LATE))
     plain = not isinstance(t, tuple) or t[1] != INF or t[0] <= 0 or not has_variable(tree)
     if plain or tree[0] in ("t", "points"): return in_one_pass(tree, t)
-    more = {"+": (by_quotient, swinging), "-": (by_quotient, swinging), "*": (by_quotient, swinging, damped), "/": (by_quotient, damped)}
-    ways = [found for found in (attempt(way, tree, t) for way in (in_one_pass, *more.get(tree[0], (by_quotient,)))) if found]
+    more = (swinging, functools.partial(swinging, out=False), damped) if tree[0] in "+-*/" else ()
+    ways = [found for found in (attempt(way, tree, t) for way in (in_one_pass, by_quotient, *more)) if found]
     decided(ways, "nothing bounds this")
     return max(low for low, _ in ways), min(high for _, high in ways)
 
@@ -1804,7 +1805,8 @@ def drive(claim, at=FOR_EVER):
     factors = {**dict.fromkeys(FIRST_ORDER, (0, alpha, 1, 0)), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
     gamma = positive(scenario.body.get("gain"), "gain")
     rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=resolved(tree, at)) for tree in scenario.motion]
-    sums = [functools.reduce(plus, (times(("number", Fraction(factor)), rate) for factor, rate in zip(factors, each))) for each in rates]
+    # What has no weight is left out: a product with zero would keep the sum from being a quotient of polynomials.
+    sums = [functools.reduce(plus, (times(("number", Fraction(by)), tree) for by, tree in zip(factors, each) if by)) for each in rates]
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
 def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])

@@ -1,6 +1,9 @@
 //! Formulas as weights, delays, leaders and pushes: what is claimed of them is shown, and no claim is rejected.
 
-use super::{RING, judged, masses};
+use std::fs;
+
+use super::{RING, judged, masses, outcome_of_pair};
+use crate::support::folder;
 
 fn accepted(scenario: &str, id: &str, answer: &str) {
     assert_eq!(judged(scenario, id), (answer.to_owned(), "accepted".to_owned()), "{id}: {scenario}");
@@ -89,6 +92,17 @@ fn leaders_are_certified_up_to_the_gain_that_they_need() {
         accepted(&text, "bounded-leader", "holds");
         accepted(&text, "sign-gain", "holds");
     }
+    // What has no weight does not count, and factors that belong together stay so.
+    for (motion, gain, less) in [("atan(2 + t/20)", "10", "0.005"), ("0.5*tanh(1 - exp(-t)) + cos(t)", "3", "1.2")] {
+        let scenario = |gain: &str| led(&format!("formulas = [\"{motion}\"]"), gain);
+        accepted(&scenario(gain), "sign-gain", "holds");
+        let folder = folder();
+        let file = folder.path().join("own.toml");
+        fs::write(&file, scenario(gain)).unwrap();
+        assert_eq!(outcome_of_pair(&file, &scenario(less), "sign-gain").0, "rejected", "{motion}");
+    }
+    // Of a drive that comes to what it was at the start again, but for rounding, the start is the witness.
+    accepted(&led("formulas = [\"exp(-t) + t\"]", "1"), "sign-gain", "violated");
     let waves =
         "sinusoids = [{ waves = [{ amplitude = 1, rad_per_s = 1 }, { amplitude = 1, rad_per_s = 1.41421356 }] }]";
     accepted(&led(waves, "4"), "sign-gain", "holds");
