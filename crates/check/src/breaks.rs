@@ -1,9 +1,9 @@
 //! What would break what holds: the other side of every hypothesis on which a promise rests.
 
 use forwardstep_sim::Setup;
+use forwardstep_sim::graph::needed_edges;
 
-use crate::graphs::needed_links;
-use crate::hypothesis::{Id, Named};
+use crate::hypothesis::Id;
 use crate::report::Report;
 
 /// What would break one of the hypotheses.
@@ -22,11 +22,10 @@ pub fn breaks(setup: &Setup, report: &Report) -> Vec<Break> {
     for hypothesis in report.hypotheses.iter().filter(|hypothesis| hypothesis.answer().is_fine()) {
         let id = hypothesis.id;
         if found.iter().all(|one| one.id != id) {
-            let links = match id {
-                Id::SpanningTree | Id::LeaderReachesAll => links(setup),
-                _ => None,
+            let words = match id {
+                Id::SpanningTree | Id::LeaderReachesAll => format!("{}; {}", id.broken_by(), links(setup)),
+                _ => id.broken_by().to_owned(),
             };
-            let words = links.map_or_else(|| id.broken_by().to_owned(), |links| format!("{}; {links}", id.broken_by()));
             found.push(Break { id, words });
         }
     }
@@ -34,19 +33,19 @@ pub fn breaks(setup: &Setup, report: &Report) -> Vec<Break> {
 }
 
 /// Which links the network cannot do without, each by itself.
-fn links(setup: &Setup) -> Option<String> {
+fn links(setup: &Setup) -> String {
     const SHOWN: usize = 6;
-    let needed = needed_links(setup)?;
-    let name =
-        |&(from, to): &(usize, usize)| format!("{} → {}", Named::of(setup, from).name, Named::of(setup, to).name);
+    let network = &setup.network;
+    let needed = needed_edges(network.agents, network.schedule.recurring_graphs().iter().flatten());
+    let name = |&(from, to): &(usize, usize)| format!("{} → {}", setup.vertex_name(from), setup.vertex_name(to));
     let shown: Vec<String> = needed.iter().take(SHOWN).map(name).collect();
     let more = match needed.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    Some(match needed.len() {
+    match needed.len() {
         0 => "no link is needed by itself".to_owned(),
         1 => format!("one link is needed by itself: {}", shown.concat()),
         _ => format!("each of these links is needed by itself: {}{more}", shown.join(", ")),
-    })
+    }
 }

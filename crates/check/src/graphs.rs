@@ -1,6 +1,6 @@
 //! What is found of graphs and their schedule.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, SpanningTree, Weight, spanning_tree as tree};
@@ -79,39 +79,6 @@ pub(crate) fn leader_in_every_graph(setup: &Setup) -> Hypothesis {
     });
     let evidence = unheard.unwrap_or(GraphEvidence::InEveryGraph { graphs: graphs.len(), for_all_time });
     Hypothesis::new(Id::LeaderInEveryGraph, evidence)
-}
-
-/// The links without each of which the graphs that recur leave somebody unheard for ever, as (from, to) in order; none where they do so
-/// anyway. `None` for a network so large that looking for them would take seconds.
-pub(crate) fn needed_links(setup: &Setup) -> Option<Vec<(usize, usize)>> {
-    const MOST_WORK: usize = 20_000_000;
-    let (agents, graphs) = (setup.network.agents, setup.network.schedule.recurring_graphs());
-    let union: BTreeMap<(usize, usize), &Edge> =
-        graphs.iter().flatten().map(|edge| ((edge.from, edge.to), edge)).collect();
-    let SpanningTree::Rooted { roots } = tree(agents, union.values().copied()) else { return Some(Vec::new()) };
-    if agents.saturating_mul(agents + union.len()) > MOST_WORK {
-        return None;
-    }
-    // One tree is enough to look at: whatever is not in it can go, and the tree is still there.
-    let mut heard = vec![false; agents];
-    let mut reached: Vec<usize> = roots.into_iter().take(1).collect();
-    reached.iter().for_each(|&root| heard[root] = true);
-    let mut links = Vec::new();
-    while let Some(from) = reached.pop() {
-        for (&link, _) in union.range((from, 0)..(from + 1, 0)) {
-            if !std::mem::replace(&mut heard[link.1], true) {
-                reached.push(link.1);
-                links.push(link);
-            }
-        }
-    }
-    let needed = |link: &(usize, usize)| {
-        let others = union.iter().filter(|(other, _)| *other != link).map(|(_, edge)| *edge);
-        matches!(tree(agents, others), SpanningTree::Missing { .. })
-    };
-    links.retain(needed);
-    links.sort_unstable();
-    Some(links)
 }
 
 /// The shortest time for which a graph stays.

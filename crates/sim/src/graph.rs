@@ -1,7 +1,9 @@
 //! Weighted digraphs in which an edge says who hears whom.
 
-use petgraph::algo::kosaraju_scc;
-use petgraph::graph::DiGraph;
+use std::collections::BTreeSet;
+
+use petgraph::algo::{dominators, kosaraju_scc};
+use petgraph::graph::{DiGraph, NodeIndex};
 
 use crate::formula::BoundedFormula;
 use crate::quantity::{QuantityError, Sign, positive};
@@ -104,15 +106,63 @@ pub(crate) fn spanning_tree_of(agents: usize, edges: &[(usize, usize)]) -> Spann
     }
 }
 
+/// The edges without each of which no agent reaches all others any more, as (from, to) in order; several from one agent to another are one.
+/// Empty where there is no spanning tree anyway.
+///
+/// A root needs no edge that leads to it: no path from it has to come back to it, so without that edge it reaches all as before. Any other
+/// agent v has to be reached from the roots, which count as one vertex here. It hears what v dominates through v alone, that is, what is
+/// reached on no path around v; so an edge to v is needed if it is the only one from anywhere else.
+pub fn needed_edges<'a>(agents: usize, edges: impl IntoIterator<Item = &'a Edge>) -> Vec<(usize, usize)> {
+    let pairs: BTreeSet<(usize, usize)> = edges.into_iter().map(|edge| (edge.from, edge.to)).collect();
+    let pairs: Vec<(usize, usize)> = pairs.into_iter().collect();
+    let SpanningTree::Rooted { roots } = spanning_tree_of(agents, &pairs) else { return Vec::new() };
+    let Some(&root) = roots.first() else { return Vec::new() };
+    let mut place: Vec<usize> = (0..agents).collect();
+    roots.iter().for_each(|&one| place[one] = root);
+    let merged: Vec<(usize, usize)> = pairs.iter().map(|&(from, to)| (place[from], place[to])).collect();
+    let tree = dominators::simple_fast(&digraph(agents, &merged), NodeIndex::new(root));
+    let mut dominated = vec![Vec::new(); agents];
+    for agent in 0..agents {
+        if let Some(parent) = tree.immediate_dominator(NodeIndex::new(agent)) {
+            dominated[parent.index()].push(agent);
+        }
+    }
+    // What v dominates was numbered between when v was met and when it was left.
+    let (mut met, mut left, mut count) = (vec![0; agents], vec![0; agents], 0);
+    let mut waiting = vec![(root, false)];
+    while let Some((agent, is_done)) = waiting.pop() {
+        if is_done {
+            left[agent] = count;
+        } else {
+            met[agent] = count;
+            count += 1;
+            waiting.push((agent, true));
+            waiting.extend(dominated[agent].iter().map(|&other| (other, false)));
+        }
+    }
+    let dominates = |v: usize, other: usize| (met[v]..left[v]).contains(&met[other]);
+    let enters = |&(from, to): &(usize, usize)| place[to] != root && !dominates(to, place[from]);
+    let entering: Vec<(usize, usize)> = pairs.into_iter().filter(enters).collect();
+    let mut entries = vec![0; agents];
+    entering.iter().for_each(|&(_, to)| entries[to] += 1);
+    entering.into_iter().filter(|&(_, to)| entries[to] == 1).collect()
+}
+
+fn digraph(agents: usize, edges: &[(usize, usize)]) -> DiGraph<(), (), usize> {
+    let mut graph = DiGraph::with_capacity(agents, edges.len());
+    for _ in 0..agents {
+        graph.add_node(());
+    }
+    for &(from, to) in edges {
+        graph.add_edge(NodeIndex::new(from), NodeIndex::new(to), ());
+    }
+    graph
+}
+
 /// The strongly connected components, each sorted, in order of their first agent. Without recursion: a path may be as long as
 /// there are agents.
 pub fn strong_components(agents: usize, edges: &[(usize, usize)]) -> Vec<Vec<usize>> {
-    let mut graph = DiGraph::<(), (), usize>::with_capacity(agents, edges.len());
-    let vertices: Vec<_> = (0..agents).map(|_| graph.add_node(())).collect();
-    for &(from, to) in edges {
-        graph.add_edge(vertices[from], vertices[to], ());
-    }
-    let mut components: Vec<Vec<usize>> = kosaraju_scc(&graph)
+    let mut components: Vec<Vec<usize>> = kosaraju_scc(&digraph(agents, edges))
         .into_iter()
         .map(|component| {
             let mut agents: Vec<usize> = component.into_iter().map(|vertex| vertex.index()).collect();
@@ -168,6 +218,48 @@ mod tests {
         assert_eq!(strong_components(n, &path).len(), n);
         let ring: Vec<(usize, usize)> = (0..n).map(|k| (k, (k + 1) % n)).collect();
         assert_eq!(strong_components(n, &ring), [(0..n).collect::<Vec<_>>()]);
+    }
+
+    #[test]
+    fn prop_needed_edges_are_those_without_which_no_tree_is_left() {
+        let mut state = 1_u64;
+        let mut draw = |below: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        let mut sizes = [0; 4];
+        for _ in 0..3000 {
+            let agents = 1 + draw(7) as usize;
+            let vertex = |draw: u64| draw as usize % agents;
+            let drawn: Vec<(usize, usize)> =
+                (0..draw(16)).map(|_| (vertex(draw(7)), vertex(draw(7)))).filter(|(from, to)| from != to).collect();
+            let all = edges(&drawn);
+            let is_rooted =
+                |edges: &[(usize, usize)]| matches!(spanning_tree_of(agents, edges), SpanningTree::Rooted { .. });
+            let is_needed = |link: &(usize, usize)| {
+                !is_rooted(&drawn.iter().copied().filter(|other| other != link).collect::<Vec<_>>())
+            };
+            let mut expected: Vec<(usize, usize)> = drawn.iter().copied().filter(is_needed).collect();
+            expected.sort_unstable();
+            expected.dedup();
+            if !is_rooted(&drawn) {
+                expected.clear();
+            }
+            assert_eq!(needed_edges(agents, &all), expected, "{agents} {drawn:?}");
+            sizes[expected.len().min(3)] += 1;
+        }
+        assert!(sizes.iter().all(|count| *count > 100), "{sizes:?}");
+    }
+
+    #[test]
+    fn of_a_hundred_thousand_agents_the_needed_edges_are_found() {
+        let n = 100_000;
+        let path: Vec<(usize, usize)> = (1..n).map(|k| (k - 1, k)).collect();
+        assert_eq!(needed_edges(n, &edges(&path)), path);
+        let both_ways: Vec<(usize, usize)> = (2..n).flat_map(|k| [(k - 1, k), (k, k - 1)]).chain([(0, 1)]).collect();
+        assert_eq!(needed_edges(n, &edges(&both_ways)), path, "behind a leader");
+        let ring: Vec<(usize, usize)> = (0..n).map(|k| (k, (k + 1) % n)).collect();
+        assert_eq!(needed_edges(n, &edges(&ring)), []);
     }
 
     #[test]

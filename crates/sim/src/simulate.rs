@@ -102,7 +102,7 @@ pub(crate) struct Observers<'a> {
     pub(crate) moment: Option<&'a mut dyn FnMut(Moment<'_>)>,
     /// At every row that is recorded.
     pub(crate) rows: Option<&'a mut dyn RowSink>,
-    /// What agents told before t = 0, which nobody looks at: the one thing that changes a run.
+    /// What agents transmitted before t = 0: the one entry that changes a run.
     pub(crate) before: Option<&'a [Vec<f64>]>,
 }
 

@@ -29,35 +29,22 @@ impl Algebra for Resolved {
     }
 
     fn unary(&mut self, function: Unary, a: Expression) -> Expression {
-        match function {
-            Unary::Negate => -a,
-            Unary::Sin => a.sin_of(),
-            Unary::Cos => a.cos_of(),
-            Unary::Exp => a.exp_of(),
-            Unary::Log => a.log_of(),
-            Unary::Sqrt => a.sqrt_of(),
-            Unary::Tanh => a.tanh_of(),
-            Unary::Atan => a.atan_of(),
-            Unary::Abs => match sign(&a) {
-                Some(true) => a,
-                Some(false) => -a,
-                None => a.abs_of(),
-            },
+        match (function == Unary::Abs).then(|| sign(&a)).flatten() {
+            Some(true) => a,
+            Some(false) => -a,
+            None => a.under(function),
         }
     }
 
     fn binary(&mut self, function: Binary, a: Expression, b: Expression) -> Expression {
-        match function {
-            Binary::Add => a + b,
-            Binary::Subtract => a - b,
-            Binary::Multiply => a * b,
-            Binary::Divide => a / b,
-            Binary::Min | Binary::Max => match sign(&(a.clone() - b.clone())) {
-                Some(above) if above == (function == Binary::Max) => a,
-                Some(_) => b,
-                None if function == Binary::Min => a.smaller(b),
-                None => a.larger(b),
-            },
+        let is_first_larger = match function {
+            Binary::Min | Binary::Max => sign(&(a.clone() - b.clone())),
+            Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide => None,
+        };
+        match is_first_larger {
+            Some(larger) if larger == (function == Binary::Max) => a,
+            Some(_) => b,
+            None => a.with(b, function),
         }
     }
 

@@ -78,32 +78,24 @@ impl Algebra for Slopes {
     fn unary(&mut self, function: Unary, a: Slope) -> Slope {
         let Slope { value: inner, slope } = a;
         let a = || inner.clone();
-        let (value, outer) = match function {
-            Unary::Negate => (-a(), Some(number(-1.0))),
-            Unary::Sin => (a().sin_of(), Some(a().cos_of())),
-            Unary::Cos => (a().cos_of(), Some(-a().sin_of())),
-            Unary::Exp => (a().exp_of(), Some(a().exp_of())),
-            Unary::Log => (a().log_of(), Some(number(1.0) / a())),
-            Unary::Sqrt => (a().sqrt_of(), Some(number(0.5) / a().sqrt_of())),
-            Unary::Abs => (a().abs_of(), None),
-            Unary::Tanh => (a().tanh_of(), Some(number(1.0) - a().tanh_of().power(2.0))),
-            Unary::Atan => (a().atan_of(), Some(number(1.0) / (number(1.0) + a().power(2.0)))),
+        let outer = match function {
+            Unary::Negate => Some(number(-1.0)),
+            Unary::Sin => Some(a().cos_of()),
+            Unary::Cos => Some(-a().sin_of()),
+            Unary::Exp => Some(a().exp_of()),
+            Unary::Log => Some(number(1.0) / a()),
+            Unary::Sqrt => Some(number(0.5) / a().sqrt_of()),
+            Unary::Abs => None,
+            Unary::Tanh => Some(number(1.0) - a().tanh_of().power(2.0)),
+            Unary::Atan => Some(number(1.0) / (number(1.0) + a().power(2.0))),
         };
         let constant = slope.as_ref().is_some_and(|slope| is(slope, 0.0));
         let slope = if constant { slope } else { slope.zip(outer).map(|(slope, outer)| times(slope, outer)) };
-        Slope { value, slope }
+        Slope { value: inner.under(function), slope }
     }
 
     fn binary(&mut self, function: Binary, a: Slope, b: Slope) -> Slope {
         let (x, y) = (|| a.value.clone(), || b.value.clone());
-        let value = match function {
-            Binary::Add => x() + y(),
-            Binary::Subtract => x() - y(),
-            Binary::Multiply => x() * y(),
-            Binary::Divide => x() / y(),
-            Binary::Min => x().smaller(y()),
-            Binary::Max => x().larger(y()),
-        };
         let slope = a.slope.clone().zip(b.slope.clone()).and_then(|(da, db)| match function {
             Binary::Add => Some(plus(da, db)),
             Binary::Subtract => Some(plus(da, negated(db))),
@@ -115,7 +107,7 @@ impl Algebra for Slopes {
             Binary::Min | Binary::Max if is(&da, 0.0) && is(&db, 0.0) => Some(number(0.0)),
             Binary::Min | Binary::Max => None,
         });
-        Slope { value, slope }
+        Slope { value: a.value.with(b.value, function), slope }
     }
 
     fn power(&mut self, a: Slope, exponent: &Number) -> Slope {

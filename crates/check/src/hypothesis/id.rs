@@ -51,10 +51,10 @@ table! {
     // The network.
     SpanningTree, "spanning-tree", "Theorems 1 to 5", Source::Paper,
         "the union of the graphs over uniformly bounded windows contains a directed spanning tree",
-        "groups that from some time on hear nobody outside themselves: each then agrees for itself";
+        "groups that from some time on hear no agent outside themselves: each then agrees for itself";
     LeaderReachesAll, "leader-reaches-all", "Theorems 8 and 9", Source::Paper,
         "the leader reaches everybody: the graph contains a directed spanning tree rooted at it",
-        "an agent that nothing of the leader reaches any more: it then follows those that it hears, or nobody";
+        "an agent that nothing of the leader reaches any more: it then follows those alone that it hears, if any";
     LeaderInEveryGraph, "leader-in-every-graph", "own derivation", Source::Derived,
         "the leader reaches everybody in each of the graphs that take turns",
         "a graph in which nothing of the leader reaches some: with the sign they draw others away meanwhile, and an error stays";

@@ -299,6 +299,12 @@ impl Expression {
         self
     }
 
+    /// This as the operand of `function`.
+    #[must_use]
+    pub fn under(self, function: Unary) -> Self {
+        self.then(Step::Unary(function))
+    }
+
     /// To a constant power.
     #[must_use]
     pub fn power(self, exponent: impl Into<Number>) -> Self {
@@ -376,7 +382,9 @@ macro_rules! binary {
 binary!(Add::add = Add, Sub::sub = Subtract, Mul::mul = Multiply, Div::div = Divide);
 
 impl Expression {
-    fn with(mut self, other: impl Into<Expression>, function: Binary) -> Self {
+    /// This and `other`, in this order, as the operands of `function`.
+    #[must_use]
+    pub fn with(mut self, other: impl Into<Expression>, function: Binary) -> Self {
         self.steps.extend(other.into().steps);
         self.then(Step::Binary(function))
     }

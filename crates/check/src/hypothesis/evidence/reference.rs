@@ -122,7 +122,7 @@ impl ReferenceEvidence {
             ReferenceEvidence::ComplexRoots { .. }
             | ReferenceEvidence::NoDesign
             | ReferenceEvidence::NoDesignInThese
-            // A run is computed in floating point: nobody else can replay it exactly, so it refutes nothing strictly.
+            // A run is computed in floating point: no other program can replay it exactly, so it refutes nothing strictly.
             | ReferenceEvidence::Tried { .. } => Answer::NotShown,
             ReferenceEvidence::Unstable { .. } => Answer::Violated,
             ReferenceEvidence::FirstRoots(_) | ReferenceEvidence::FilteredDerivative { .. } => Answer::NotCovered,
