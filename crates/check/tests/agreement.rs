@@ -1,7 +1,5 @@
 //! The conserved quantity, the spread that never grows, and the case in which it does.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, ReferenceDynamics};
 use std::sync::Arc;
 

@@ -1,7 +1,5 @@
 //! What would break what holds.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::common::{edge, masses, noise};
 use forwardstep_check::{Id, breaks, check};
 use forwardstep_sim::delay::Delay;

@@ -1,7 +1,5 @@
 //! Names of hypotheses are stable, and answers follow from evidence.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use forwardstep_sim::reference::PureIntegral;
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -1,7 +1,5 @@
 //! Verdicts about laws of Sections IV and V: what they need to know, and what has to be bounded.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use crate::common::kinds::{
     alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, filtered_spacecraft, formula, planar_tip,
     power_of_time, rest_at, spacecraft, tracking, tree_tip, vehicle,

@@ -1,5 +1,4 @@
 //! Verdicts about following a leader.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod turns;
 

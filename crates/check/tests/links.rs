@@ -1,7 +1,5 @@
 //! Verdicts about links: packets, random holds, formulas.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::common::{edge, masses};
 use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::expression::Expression;

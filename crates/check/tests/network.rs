@@ -1,7 +1,5 @@
 //! Verdicts about what agents share: κ₀, orders, graphs, weights, limits.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::common::kinds::{alone, blind_mass, chain};
 use crate::common::{About, answer, answers, arm, edge, setup};
 use forwardstep_check::{Answer, Source, Theorem, check};

@@ -1,7 +1,5 @@
 //! How much each agent counts, beside exact arithmetic.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use crate::common::{edge, masses, noise};
 use forwardstep_check::{NoPrediction, Prediction, predict};
 use forwardstep_sim::delay::Delay;

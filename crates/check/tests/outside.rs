@@ -1,5 +1,4 @@
 //! Robots of which only their authors say that they have the three properties of Section II-B.
-#![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
 

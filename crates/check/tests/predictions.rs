@@ -1,7 +1,5 @@
 //! When the value agreed upon is known before the run, and every reason why it is not.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 mod course;
 mod gains;
 mod guaranteed;

@@ -1,7 +1,5 @@
 //! What pushes do to the value agreed upon: nothing without λ, and with it what Remark 4 says.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 mod injected;
 mod injected_alone;
 mod manipulability;

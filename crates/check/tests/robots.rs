@@ -1,7 +1,5 @@
 //! What is said of robots before a run: Property 1 by a bound, bounded C and g, targets within reach, how fast K is.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use crate::common::kinds::{alone, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};

@@ -1,7 +1,5 @@
 //! What does not switch, what recurs and what is drawn; every *holds* is also run.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use crate::common::{About, answer, column, edge, masses, run};

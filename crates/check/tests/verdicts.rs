@@ -1,7 +1,5 @@
 //! Verdicts at their edges: what holds for ever, what on the run, and what is said only where it applies.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 mod asked;
 mod complex_roots;
 

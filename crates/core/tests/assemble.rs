@@ -1,5 +1,4 @@
 //! Building trees: what is refused, what is named, and which bodies cannot exist.
-#![allow(clippy::unwrap_used)] // In helpers too.
 
 use forwardstep_core::robot::tree::{
     InertiaDefect, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_about_frame,

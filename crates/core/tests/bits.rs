@@ -1,5 +1,4 @@
 //! The same bits from hardware and software: a build without `std` multiplies and adds with `libm`.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_core::Scalar;
 

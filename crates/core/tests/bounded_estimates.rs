@@ -1,5 +1,4 @@
 //! Estimates that are kept within bounds: V changes as each proof says, on either side of every bound, and what is used keeps to them.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use forwardstep_core::controller::{
     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, ChainError, Controller, Following, Given, Guide,

@@ -1,5 +1,4 @@
 //! Laws for plants of any order: identities of the proofs at random states, and the literal equations.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{

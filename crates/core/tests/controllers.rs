@@ -1,5 +1,4 @@
 //! References, sampled agents and laws at their edges: starts, signs, samples, limits, divisors.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::common::looped::polynomial as moved;
 use forwardstep_core::Gain;

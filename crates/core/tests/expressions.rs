@@ -1,5 +1,4 @@
 //! Derivatives of expressions, function by function, against closed forms.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_core::expression::{Binary, Expression, ExpressionError, Graph, Step, Tape, Unary};
 

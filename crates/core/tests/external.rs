@@ -1,6 +1,5 @@
 //! What acts from outside enters every plant where its equations say: forces over masses, torques over inertias, disturbances as
 //! they are.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;

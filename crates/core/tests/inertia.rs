@@ -1,7 +1,5 @@
 //! Property 1: bounds of M(q) that hold at every q.
 
-#![allow(clippy::unwrap_used)] // In helpers too.
-
 use crate::common::models;
 use crate::common::random::Random;
 use forwardstep_core::expression::Interval;

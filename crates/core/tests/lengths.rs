@@ -1,5 +1,4 @@
 //! Whatever the lengths of the slices and whatever the numbers in them: a result or a `LengthError`, never a panic.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_core::law::{SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree};

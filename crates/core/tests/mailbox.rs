@@ -1,7 +1,5 @@
 //! The mailbox against a list of everything that was ever posted.
 
-#![allow(clippy::unwrap_used)]
-
 use forwardstep_core::LengthError;
 use forwardstep_core::sampled::{Arrival, BeforeFirst, Counts, Keep, Mailbox, MailboxError};
 use proptest::prelude::*;

@@ -1,5 +1,4 @@
 //! An observer of the leader in the place of (110): its Lyapunov balance, its finite time, and what it does not hear.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_core::reference::{
     Choice, Derived, Following, Heard, Measured, Observer, Reference, ReferenceOut, Sliding, saturated,

@@ -1,5 +1,4 @@
 //! A filter of the attitude error in the place of Theorem 7: what V loses, and the term that wheels leave.
-#![allow(clippy::unwrap_used)]
 
 use crate::common::looped::{Looped, polynomial};
 use crate::common::random::Random;

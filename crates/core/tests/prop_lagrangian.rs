@@ -1,8 +1,6 @@
 //! Properties 1–3 of Lagrangian robots, and that all methods of one robot tell the same story: trees, the planar arm, the
 //! point mass.
 
-#![allow(clippy::unwrap_used)] // In helpers too.
-
 use crate::common::dual::{Dual, constants, duals};
 use crate::common::random::Random;
 use crate::common::{dot, error, times, transpose_times};

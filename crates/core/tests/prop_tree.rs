@@ -1,8 +1,6 @@
 //! What is particular to trees: lumping, locking, lengths, bits, and that nothing is allocated. One file, since every other would compile the
 //! kernels for all instruction sets again.
 
-#![allow(clippy::unwrap_used)] // In helpers too.
-
 use crate::common::error;
 use crate::common::random::{Random, inertia_of};
 use forwardstep_core::robot::tree::{

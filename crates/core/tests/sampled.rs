@@ -1,7 +1,5 @@
 //! What a sampled controller does when something goes wrong, and what it needs to know.
 
-#![allow(clippy::unwrap_used)]
-
 use std::sync::Arc;
 
 use forwardstep_core::agent::{FilterError, Inbox, LimiterError, StepError, VelocityFilter};

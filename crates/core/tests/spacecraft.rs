@@ -1,5 +1,4 @@
 //! (94)–(107): a spacecraft with reaction wheels, and its attitude without angular velocity.
-#![allow(clippy::unwrap_used)]
 
 use crate::common::looped::{Looped, polynomial};
 use crate::common::random::Random;

@@ -1,5 +1,4 @@
 //! (71)–(82): the tip of an arm with uncertain lengths, without its velocity.
-#![allow(clippy::unwrap_used)]
 
 mod lengths;
 mod measured;

@@ -1,5 +1,4 @@
 //! Plants with several axes and a matrix ψ: V along the loop at random states, one axis against the law for one, a ψ without an inverse.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{

@@ -1,5 +1,4 @@
 //! What the program does for people, as one program: each file is a module of it, so that what they share is compiled once.
-#![cfg(feature = "program")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod architecture;

@@ -1,5 +1,4 @@
 //! The rules of ARCHITECTURE.md that can be read off manifests and sources.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeSet;
 use std::fs;

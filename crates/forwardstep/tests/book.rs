@@ -1,6 +1,5 @@
 //! The book: its chapters are listed, and every command in it prints what it says.
-#![cfg(all(feature = "program", unix))]
-#![allow(clippy::unwrap_used, clippy::panic)]
+#![cfg(unix)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! Estimates that are kept within bounds, by every adaptive law: identities hold along runs, estimates keep to the bounds whatever pushes,
 //! and bounds that leave the truth out are found.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

@@ -1,11 +1,10 @@
 //! `forwardstep check`: exit statuses, waivers, and the document for programs.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod derivation;
 mod narrow;
 mod protocols;
 mod smoothness;
+
 use std::fs;
 
 use crate::support::{folder, forwardstep, stderr, stdout};

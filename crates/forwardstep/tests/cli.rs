@@ -1,8 +1,7 @@
 //! The program as a user meets it: what it prints, what it writes, and how it exits.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod advice;
+
 use std::fs;
 use std::path::Path;
 use std::process::{Command as Process, Stdio};

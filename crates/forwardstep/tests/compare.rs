@@ -1,6 +1,4 @@
 //! `forwardstep compare`: runs side by side.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::path::Path;

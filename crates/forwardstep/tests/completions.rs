@@ -1,6 +1,4 @@
 //! Scripts for shells.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used)]
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;

@@ -1,5 +1,4 @@
 //! The documents say what is true: links lead somewhere, names exist, the table of the paper is complete.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeSet;
 use std::fs;

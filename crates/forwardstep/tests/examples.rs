@@ -1,5 +1,4 @@
 //! The examples run and say what is true.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -64,7 +63,6 @@ fn controllers_stepped_by_hand_agree_over_a_radio_that_loses_packets() {
 }
 
 #[test]
-#[cfg(feature = "files")]
 fn robots_from_a_urdf_have_dynamics_and_agree() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../io/robots/gantry.urdf");
     for (arguments, axes) in [(&[][..], 6), (&[file.to_str().unwrap()][..], 3)] {
@@ -80,7 +78,6 @@ fn robots_from_a_urdf_have_dynamics_and_agree() {
 }
 
 #[test]
-#[cfg(feature = "program")]
 fn a_program_of_ones_own_knows_its_kinds() {
     let lines = printed("tank", &["schema"]);
     assert!(lines.iter().any(|line| line.contains("inflow_limit_m3_s")));

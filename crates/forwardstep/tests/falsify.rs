@@ -1,6 +1,4 @@
 //! `forwardstep falsify`, a minute of it, and `forwardstep attack`.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 

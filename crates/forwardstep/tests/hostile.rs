@@ -1,6 +1,4 @@
 //! Files, arguments and folders that are not what they should be, by mistake or on purpose, and what is said of them.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::time::{Duration, Instant};

@@ -1,6 +1,4 @@
 //! Every hypothesis and every theorem that `check` knows is shown by a shipped scenario, or by one with a change.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep::core::Gain;
 use forwardstep::core::reference::WrittenIn;

@@ -1,6 +1,5 @@
 //! Runs that are killed, or whose files may not grow, and what `forwardstep report` makes of what they left.
-#![cfg(all(feature = "program", unix))]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(unix)]
 
 use std::fs;
 use std::path::Path;

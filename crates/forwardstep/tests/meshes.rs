@@ -1,6 +1,4 @@
 //! `forwardstep run --meshes`: robots as their URDFs describe them, on the page of a run.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 

@@ -1,6 +1,4 @@
 //! `new`: every combination of its options is a scenario that runs.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::ops::ControlFlow;

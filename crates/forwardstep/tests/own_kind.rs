@@ -1,6 +1,4 @@
 //! A kind of robot and a law of one's own: scenario files, schema, messages, runs and reports know them.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../examples/tank.rs"]
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]

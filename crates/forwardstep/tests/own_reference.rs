@@ -1,6 +1,4 @@
 //! Reference dynamics of one's own: scenario files, schema, messages, verdicts, runs and reports know them.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../examples/own_reference.rs"]
 #[allow(dead_code, unreachable_pub, clippy::print_stderr, reason = "an example that is a program of its own")]

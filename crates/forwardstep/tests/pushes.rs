@@ -1,6 +1,4 @@
 //! What the shipped scenarios with pushes say of λ: with it agents stay where they are moved to, without it they come back.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

@@ -1,6 +1,4 @@
 //! `forwardstep report`: the report of a run, built anew from its folder.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,6 +1,4 @@
 //! `robot` as a user meets it.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 

@@ -1,6 +1,4 @@
 //! Every shipped scenario shows what it says: its hypotheses hold, it completes, and it meets its goal.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep::core::reference::WrittenIn;
 use forwardstep::core::signal::Signal;

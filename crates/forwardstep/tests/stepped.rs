@@ -1,5 +1,4 @@
 //! Controllers that are stepped by hand have the bits of the simulator, and their carts go the same ways.
-#![allow(clippy::unwrap_used)]
 
 #[path = "../examples/stepped.rs"]
 #[allow(dead_code, unreachable_pub, missing_docs, reason = "an example that is a program of its own")]

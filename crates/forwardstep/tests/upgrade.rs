@@ -1,6 +1,4 @@
 //! Scenario files and runs of format 1: converted by `forwardstep upgrade`, and still reported.
-#![cfg(feature = "program")]
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

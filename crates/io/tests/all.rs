@@ -1,6 +1,7 @@
 //! What is read and written, as one program: each file is a module of it, so that what they share is compiled once.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
+mod folders;
 mod forged_tables;
 mod metrics;
 mod names;

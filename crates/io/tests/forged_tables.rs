@@ -1,7 +1,5 @@
 //! Tables that somebody forged, with a summary that fits them: no panic, no memory beyond what the file justifies, no rows that
 //! it does not hold.
-#![cfg(feature = "report")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,6 +1,4 @@
 //! The metrics of a run, beside what one computes by hand, and the goals judged by them.
-#![cfg(feature = "report")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use crate::support::{agent, setup, two_arms};
 use forwardstep_io::output::{Absence, Disagreement, DisagreementSeries, LimitKind, Metrics};

@@ -1,6 +1,4 @@
 //! Columns and units of the shipped kinds, whose signals are rows of one table.
-#![cfg(feature = "report")]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::collections::HashMap;
 

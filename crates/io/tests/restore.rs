@@ -1,6 +1,4 @@
 //! Folders of runs, read back whole and after somebody was at them.
-#![cfg(feature = "report")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::fs;
 use std::ops::ControlFlow;

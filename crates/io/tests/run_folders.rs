@@ -1,6 +1,4 @@
 //! The folder of a run is a scenario that runs again, wherever it is.
-#![cfg(feature = "report")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::fs;
 use std::ops::ControlFlow;

@@ -1,6 +1,5 @@
 //! Every shipped scenario of Sections IV and V under digital control: it comes closer to the continuous one in proportion to the
 //! period.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,4 @@
 //! States of robots as JSON: what they say, and what is refused where.
-#![allow(missing_docs, clippy::unwrap_used)]
 
 use forwardstep_io::robot::{JointState, read_state};
 use forwardstep_io::{Problem, SourceText};

@@ -1,5 +1,4 @@
 //! What stands where a file is expected and is none, or is clearly another.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::fs;
 use std::path::Path;
@@ -158,7 +157,7 @@ fn pipes_devices_and_folders_are_refused_at_once() {
     assert!(said(&socket).iter().all(|said| said.contains("it is a socket, and no file")));
 }
 
-#[cfg(all(unix, feature = "report"))]
+#[cfg(unix)]
 #[test]
 fn pipes_in_the_folder_of_a_run_are_refused_at_once() {
     use forwardstep_io::output::SavedRun;

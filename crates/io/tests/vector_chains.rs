@@ -1,6 +1,5 @@
 //! Plants with several axes: what turning the axes of two plants of one axis makes of them is one plant with a full matrix ψ, and its
 //! trajectory is theirs, turned. The laws for one axis are validated elsewhere.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

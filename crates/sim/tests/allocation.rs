@@ -1,6 +1,6 @@
 //! Steps do not allocate: only history, waiting events and the recording grow, in chunks.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod cases;
 mod common;

@@ -1,5 +1,4 @@
 //! Chains of Section IV: the identities of the proofs along real runs, agreement, and sampled control.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod desired;
 mod protocols;

@@ -1,8 +1,6 @@
 //! The same setup gives the same bits: again, beside other runs in other threads, and as on the machine that wrote the
 //! digests.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 

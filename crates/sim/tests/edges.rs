@@ -1,5 +1,4 @@
 //! Networks, delays and sampled control at their edges: what is just allowed, just refused, just in time.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use forwardstep_sim::reference::PureIntegral;
 use std::ops::ControlFlow;

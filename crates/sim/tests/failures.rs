@@ -1,5 +1,4 @@
 //! What happens when a sampled controller cannot go on as usual: messages that are too old, and steps that fail.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;

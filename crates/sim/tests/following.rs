@@ -1,5 +1,4 @@
 //! Following a leader, (110), (119) and (122): the identity of the proof, convergence, and what the choice of the sign does.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! What enters as a function of time is met, however long steps have become before it.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

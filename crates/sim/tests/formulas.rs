@@ -1,5 +1,4 @@
 //! Derivatives of formulas in t, function by function.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_core::expression::Binary::{Add, Divide, Multiply};
 use forwardstep_core::expression::Step::{Binary, Number, Power, Unary as Of, Variable};

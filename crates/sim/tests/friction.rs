@@ -1,7 +1,5 @@
 //! Friction at the joints, and estimates that are kept within bounds: closed forms, the balance of V, and what samples make of them.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use std::sync::Arc;
 
 use forwardstep_core::Gain;

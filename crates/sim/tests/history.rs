@@ -1,7 +1,5 @@
 //! What is forgotten is never asked for again: every recorded number is that of the same run with all of its history kept.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use crate::cases::{cases, setup};
 use crate::common::{every_kind, following, run, sampled};
 use forwardstep_core::reference::Choice;

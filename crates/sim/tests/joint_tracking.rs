@@ -1,5 +1,4 @@
 //! Robots under (6)–(7) that follow trajectories of their own: the balance of the proof, arrival, closed forms, sampled control.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,4 @@
 //! Formulas with kinks: leaders, targets, offsets, delays, weights and pushes. Steps end there, and derivatives are one-sided.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

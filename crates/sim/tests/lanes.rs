@@ -1,5 +1,4 @@
 //! A population large enough for lanes computes, bit for bit, what its members compute one at a time.
-#![allow(clippy::unwrap_used)]
 
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;

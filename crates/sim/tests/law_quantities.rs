@@ -1,5 +1,4 @@
 //! Numbers of laws and of their robots out of range: each is refused under the path that it has in a scenario file.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

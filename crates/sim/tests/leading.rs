@@ -1,5 +1,4 @@
 //! An agent of the network that leads the others.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::sync::Arc;
 

@@ -1,5 +1,4 @@
 //! Enforced limits: torques keep to them, and the Lyapunov balance counts what they take away.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;

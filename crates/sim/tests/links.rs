@@ -1,7 +1,5 @@
 //! Links and weights of the new kinds against equal ones of the old.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 

@@ -1,6 +1,6 @@
 //! What was transmitted stays within its budget of memory; a run whose steps would need more ends, and says why.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod common;
 

@@ -1,5 +1,4 @@
 //! Delays and switching signals of one's own: the same bits as ours where they compute the same, and no lie goes unseen.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 

@@ -1,5 +1,4 @@
 //! Reference dynamics from outside: what is asked of them, and what becomes of those that are something else.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! A point mass without velocity, (a7)–(a9), and many of them: the identity of the proof along real runs.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common::masses::{consensus, tracking};
 use crate::common::{assert_first_order, balance_residual, column, last, run, truth};

@@ -1,5 +1,4 @@
 //! What authors say of their robots and laws is refuted where it is wrong, and of ours it is right.
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::any::type_name;
 use std::sync::Arc;

@@ -1,6 +1,5 @@
 //! Every kind of system is pushed: the Lyapunov balance counts the power of what acts from outside, sampled or not, and what makes
 //! no sense for a kind is refused.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::f64::consts::PI;
 use std::ops::ControlFlow;

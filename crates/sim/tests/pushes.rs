@@ -1,7 +1,5 @@
 //! What acts from outside does what it says, when it says so, and the Lyapunov balance holds all the same.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! Quantities out of their range, by the path of each; and where other errors stand.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_sim::reference::{Backstepping, Tracking};
 use std::sync::Arc;

@@ -1,8 +1,6 @@
 //! The simulator's sampled controllers, driven from outside by nothing but the public interface: the same bits, for every kind
 //! of system.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;

@@ -1,7 +1,5 @@
 //! Digital control: the continuous loop in the limit, and the very controller that runs on a robot.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::ops::ControlFlow;
 use std::sync::Arc;
 

@@ -1,5 +1,4 @@
 //! Windows of schedules against the long way round, and how dwell times are drawn.
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use forwardstep_sim::graph::{Edge, SpanningTree, spanning_tree};
 use forwardstep_sim::schedule::{Phase, Schedule, Segment, Window};

@@ -1,5 +1,4 @@
 //! Surface ships under (6)–(7): the balance of the proof, agreement, and the same motion in the axes of the body.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use crate::common::{balance_residual, column, last, run, switching};
 use forwardstep_core::Gain;

@@ -1,6 +1,5 @@
 //! A tip with uncertain lengths (76)–(82), and an attitude without angular velocity (97)–(105): the identities of the proofs
 //! along real runs, sampled runs, and what ends a run.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -1,7 +1,5 @@
 //! Closed-loop trajectories against solvers that nobody here wrote: see `validation/trajectories/README.md`.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
-
 use std::ops::ControlFlow;
 
 use crate::cases::{Case, ReferenceCase, cases, setup};

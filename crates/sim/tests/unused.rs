@@ -1,5 +1,4 @@
 //! What a kind of system does not read is refused, with the reason, and never accepted in silence.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_sim::reference::{Backstepping, Consensus};
 use std::ops::ControlFlow;

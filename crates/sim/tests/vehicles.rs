@@ -1,5 +1,4 @@
 //! Vehicles with one thrust, (44)–(58), and rotorcraft: the identities of the proofs along real runs, agreement, formations.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use forwardstep_sim::reference::Tracking;
 use std::ops::ControlFlow;

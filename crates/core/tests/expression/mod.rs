@@ -1,5 +1,4 @@
 //! Expressions: the algebras against each other, and against numbers from elsewhere.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod domains;
 mod enclosures;

@@ -1,5 +1,4 @@
 //! Scenario files: what is read, and what every mistake gets.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod blind;
 mod chains;
@@ -8,7 +7,6 @@ mod drives;
 mod edges;
 mod formulas;
 mod leader;
-#[cfg(feature = "report")]
 mod links;
 mod malformed;
 mod meaning;

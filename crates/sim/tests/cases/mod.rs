@@ -1,7 +1,6 @@
 //! Reads the problems and trajectories under `validation/trajectories/cases`.
 
 #![allow(unreachable_pub, dead_code, reason = "shared by several tests, none of which uses all of it")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
 use std::path::PathBuf;

@@ -1,7 +1,6 @@
 //! Systems of Sections IV and V as setups, and what tests ask of their runs.
 
 #![allow(unreachable_pub, dead_code, reason = "shared by several tests, none of which uses all of it")]
-#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 pub mod chains;
 pub mod following;
