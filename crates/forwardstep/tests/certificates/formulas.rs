@@ -102,7 +102,9 @@ fn leaders_are_certified_up_to_the_gain_that_they_need() {
         assert_eq!(outcome_of_pair(&file, &scenario(less), "sign-gain").0, "rejected", "{motion}");
     }
     // Of a drive that comes to what it was at the start again, but for rounding, the start is the witness.
-    accepted(&led("formulas = [\"exp(-t) + t\"]", "1"), "sign-gain", "violated");
+    for slope in ["1", "3", "5", "0.75"] {
+        accepted(&led(&format!("formulas = [\"exp(-t) + {slope}*t\"]"), slope), "sign-gain", "violated");
+    }
     let waves =
         "sinusoids = [{ waves = [{ amplitude = 1, rad_per_s = 1 }, { amplitude = 1, rad_per_s = 1.41421356 }] }]";
     accepted(&led(waves, "4"), "sign-gain", "holds");
