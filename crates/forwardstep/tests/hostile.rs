@@ -12,7 +12,7 @@ fn is_tame(said: &str) -> bool {
 
 #[test]
 fn regress_what_a_forged_run_says_does_nothing_to_a_terminal() {
-    const EVIL: &str = "\u{1b}[2J\u{1b}[31mHACK\nall in all: holds\u{200b}";
+    const EVIL: &str = "\u{1b}[2J\u{1b}[31mOWNED\nall in all: holds\u{200b}";
     let folder = folder();
     let path = |file: &str| folder.path().join("run").join(file);
     forwardstep(&folder, &["run", "first-order", "--out", "run", "--csv"]).success();
@@ -42,7 +42,7 @@ fn regress_what_a_forged_run_says_does_nothing_to_a_terminal() {
             assert!(is_tame(&said), "{command:?}: {said:?}");
             assert!(!said.contains("\nall in all"), "{command:?}: {said}");
             if refused {
-                assert!(stderr(&done.code(2)).contains("HACK"), "{command:?}: {said}");
+                assert!(stderr(&done.code(2)).contains("OWNED"), "{command:?}: {said}");
             }
             drop(fs::remove_dir_all(folder.path().join("other")));
             drop(fs::remove_dir_all(folder.path().join("forwardstep-runs")));
