@@ -39,3 +39,4 @@ pub use error::{GainError, LengthError};
 pub use gain::{Gain, InverseQuadratic, ResolvedGain};
 pub use scalar::{Lanes, Packed, Scalar};
 pub use taylor::Taylor;
+pub use trig::sine_and_cosine;

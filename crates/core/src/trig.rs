@@ -7,6 +7,7 @@
 //! the last place. Zero gives +0, whatever its sign.
 
 use crate::scalar::{Lanes, Scalar};
+use crate::{Kernel, dispatch};
 
 /// Beyond this angle the three-part reduction loses digits and the slow, exact one of `libm` takes over.
 const REDUCED_UP_TO: f64 = 1.0e5;
@@ -40,6 +41,24 @@ const COS: [f64; 7] = [
     -1.0 / 720.0,
     1.0 / 24.0,
 ];
+
+/// Sine and cosine of one angle, where no kernel is around them: there each fused multiply-add would be a call.
+///
+/// Zero gives +0 and 1.
+pub fn sine_and_cosine(angle_rad: f64) -> (f64, f64) {
+    struct OfAngle(f64);
+
+    impl Kernel for OfAngle {
+        type Output = (f64, f64);
+
+        #[inline(always)]
+        fn run(self) -> Self::Output {
+            sin_cos(self.0)
+        }
+    }
+
+    dispatch(OfAngle(angle_rad))
+}
 
 #[inline(always)]
 pub(crate) fn sin_cos(x: f64) -> (f64, f64) {

@@ -20,8 +20,10 @@ fn manifest(floor: &str) -> Table {
 /// What a crate needs when it is not being tested.
 fn dependencies(floor: &str) -> BTreeSet<String> {
     let manifest = manifest(floor);
-    assert!(!manifest.contains_key("target"), "{floor}: dependencies of single targets are not looked at");
-    let tables = ["dependencies", "build-dependencies"].into_iter().filter_map(|key| manifest.get(key)?.as_table());
+    let targets = manifest.get("target").and_then(Value::as_table).into_iter().flat_map(|targets| targets.values());
+    let tables = [&manifest].into_iter().chain(targets.filter_map(Value::as_table)).flat_map(|part| {
+        ["dependencies", "build-dependencies"].into_iter().filter_map(|key| part.get(key)?.as_table())
+    });
     tables.flat_map(|table| table.keys().cloned()).collect()
 }
 

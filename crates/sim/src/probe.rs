@@ -170,39 +170,55 @@ struct Here<'a, K> {
     dq: Vec<f64>,
 }
 
+// Kernels are inlined wherever they are called: here they are called often, and once for every robot is enough.
 impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
+    fn axes(&self) -> usize {
+        Lagrangian::<f64>::dof(self.kernel)
+    }
+
+    fn scratch(&self) -> <K as Lagrangian<f64>>::Scratch {
+        Lagrangian::<f64>::scratch(self.kernel)
+    }
+
+    #[inline(never)]
+    fn mass(&self, q: &[f64], theta: &[f64]) -> Result<Vec<f64>, LengthError> {
+        let mut out = vec![0.0; self.axes() * self.axes()];
+        self.kernel.mass_matrix(&mut self.scratch(), q, theta, &mut out).map(|()| out)
+    }
+
+    #[inline(never)]
+    fn damping(&self, theta: &[f64], v: &[f64]) -> Result<Vec<f64>, LengthError> {
+        let (mut out, still) = (vec![0.0; self.axes()], vec![0.0; self.axes()]);
+        let motion = TwoVelocity { q: &self.q[..], dq: v, z: &still[..], dz: &still[..] };
+        self.kernel.add_damping(&mut self.scratch(), motion, theta, &mut out).map(|()| out)
+    }
+
+    #[inline(never)]
+    fn coriolis(&self, theta: &[f64]) -> Result<Vec<f64>, LengthError> {
+        let mut out = vec![0.0; self.axes() * self.axes()];
+        self.kernel.coriolis_matrix(&mut self.scratch(), &self.q, &self.dq, theta, &mut out).map(|()| out)
+    }
+
+    /// M a + C v + g + D v by its parts.
+    #[inline(never)]
+    fn torque(&self, theta: &[f64], a: &[f64], v: &[f64]) -> Result<Vec<f64>, LengthError> {
+        let mut out = self.damping(theta, v)?;
+        let mut gravity = vec![0.0; self.axes()];
+        self.kernel.gravity(&mut self.scratch(), &self.q, theta, &mut gravity)?;
+        let (inertial, turning) = (times(&self.mass(&self.q, theta)?, a), times(&self.coriolis(theta)?, v));
+        let parts = inertial.into_iter().zip(turning).zip(gravity);
+        out.iter_mut().zip(parts).for_each(|(out, ((ma, cv), g))| *out += ma + cv + g);
+        Ok(out)
+    }
+
     /// The first identity that fails here.
     fn first(&self, draws: &mut Draws) -> Result<Tried, LengthError> {
         let Here { kernel, theta, q, dq } = self;
         let kernel: &K = kernel;
-        let (m, p) = (Lagrangian::<f64>::dof(kernel), Lagrangian::<f64>::parameter_count(kernel));
+        let (m, p) = (self.axes(), Lagrangian::<f64>::parameter_count(kernel));
         let [x, z, dz, tau] = draws.units::<4>(m);
-        let mut scratch = Lagrangian::<f64>::scratch(kernel);
-        let mass = |q: &[f64], theta: &[f64]| {
-            let mut out = vec![0.0; m * m];
-            kernel.mass_matrix(&mut Lagrangian::<f64>::scratch(kernel), q, theta, &mut out).map(|()| out)
-        };
-        let damping = |theta: &[f64], v: &[f64]| {
-            let mut out = vec![0.0; m];
-            let still = vec![0.0; m];
-            let motion = TwoVelocity { q, dq: v, z: &still, dz: &still };
-            kernel.add_damping(&mut Lagrangian::<f64>::scratch(kernel), motion, theta, &mut out).map(|()| out)
-        };
-        let coriolis = |theta: &[f64]| {
-            let mut out = vec![0.0; m * m];
-            kernel.coriolis_matrix(&mut Lagrangian::<f64>::scratch(kernel), q, dq, theta, &mut out).map(|()| out)
-        };
-        // M a + C v + g + D v by its parts.
-        let torque = |theta: &[f64], a: &[f64], v: &[f64]| -> Result<Vec<f64>, LengthError> {
-            let mut out = damping(theta, v)?;
-            let mut gravity = vec![0.0; m];
-            kernel.gravity(&mut Lagrangian::<f64>::scratch(kernel), q, theta, &mut gravity)?;
-            let parts = times(&mass(q, theta)?, a).into_iter().zip(times(&coriolis(theta)?, v)).zip(gravity);
-            out.iter_mut().zip(parts).for_each(|(out, ((ma, cv), g))| *out += ma + cv + g);
-            Ok(out)
-        };
-
-        let matrix = mass(q, theta)?;
+        let mut scratch = self.scratch();
+        let matrix = self.mass(q, theta)?;
         if matrix.iter().any(|entry| !entry.is_finite()) {
             return Ok(Tried::Not);
         }
@@ -217,13 +233,13 @@ impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
             return Ok(Tried::Fails(Identity::Positive, pivot, 0.0));
         }
         let moved = |sign: f64| -> Vec<f64> { q.iter().zip(dq).map(|(q, dq)| q + sign * MOVE * dq).collect() };
-        let (after, before) = (mass(&moved(1.0), theta)?, mass(&moved(-1.0), theta)?);
+        let (after, before) = (self.mass(&moved(1.0), theta)?, self.mass(&moved(-1.0), theta)?);
         let rate: Vec<f64> = after.iter().zip(&before).map(|(after, before)| (after - before) / (2.0 * MOVE)).collect();
-        let (turning, coriolis) = (dot(&x, &times(&rate, &x)), 2.0 * dot(&x, &times(&coriolis(theta)?, &x)));
+        let (turning, coriolis) = (dot(&x, &times(&rate, &x)), 2.0 * dot(&x, &times(&self.coriolis(theta)?, &x)));
         if apart(turning, coriolis, size) {
             return Ok(Tried::Fails(Identity::Skew, coriolis, turning));
         }
-        let lost = dot(&x, &damping(theta, &x)?);
+        let lost = dot(&x, &self.damping(theta, &x)?);
         if lost < 0.0 {
             return Ok(Tried::Fails(Identity::Damping, lost, 0.0));
         }
@@ -233,7 +249,7 @@ impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
             let motion = TwoVelocity { q: &q[..], dq: &dq[..], z: &z[..], dz: &dz[..] };
             let mut y = vec![0.0; m * p];
             kernel.regressor(&mut scratch, motion, &mut y)?;
-            let (of_y, of_parts) = (times(&y, &theta), torque(&theta, &dz, &z)?);
+            let (of_y, of_parts) = (times(&y, &theta), self.torque(&theta, &dz, &z)?);
             if let Some((value, expected)) = first_apart(&of_y, &of_parts) {
                 return Ok(Tried::Fails(Identity::Linear, value, expected));
             }
@@ -246,7 +262,7 @@ impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
         }
         let mut ddq = vec![0.0; m];
         kernel.forward_dynamics(&mut scratch, q, dq, theta, &tau, &mut ddq)?;
-        if let Some((value, expected)) = first_apart(&torque(theta, &ddq, dq)?, &tau) {
+        if let Some((value, expected)) = first_apart(&self.torque(theta, &ddq, dq)?, &tau) {
             return Ok(Tried::Fails(Identity::Acceleration, value, expected));
         }
         let wide = |values: &[f64]| values.iter().map(|value| Lanes::<8>::splat(*value)).collect::<Vec<_>>();

@@ -84,6 +84,20 @@ pub fn certify(setup: &Setup, report: &Report) -> Certificate {
     }
 }
 
+impl Statement {
+    /// Whether something is claimed of it, and no proof was found: then its answer rests on this program alone.
+    pub fn is_unproven(&self) -> bool {
+        claims(self.answer) && self.proof.is_none()
+    }
+}
+
+fn claims(answer: Answer) -> bool {
+    match answer {
+        Answer::Holds | Answer::HoldsOnHorizon | Answer::Violated => true,
+        Answer::Watched | Answer::NotShown | Answer::NotCovered => false,
+    }
+}
+
 fn statement(setup: &Setup, hypothesis: &Hypothesis) -> Statement {
     let agents = match &hypothesis.subject {
         Subject::Setup | Subject::Reference | Subject::Drive(_) => Vec::new(),
@@ -93,10 +107,6 @@ fn statement(setup: &Setup, hypothesis: &Hypothesis) -> Statement {
         }
     };
     let answer = hypothesis.answer();
-    let claims = match answer {
-        Answer::Holds | Answer::HoldsOnHorizon | Answer::Violated => true,
-        Answer::Watched | Answer::NotShown | Answer::NotCovered => false,
-    };
-    let proof = if claims { producers::proof(setup, hypothesis.id, &agents, answer) } else { None };
+    let proof = if claims(answer) { producers::proof(setup, hypothesis.id, &agents, answer) } else { None };
     Statement { id: hypothesis.id, agents, answer, proof }
 }

@@ -1,7 +1,7 @@
 //! Expressions in `f64`, with the same bits on every machine.
 
 use super::{Algebra, Binary, Branch, Branching, Number, Switch, Unary};
-use crate::Scalar;
+use crate::sine_and_cosine;
 
 /// Whole exponents up to this are products.
 const MOST_POWER: f64 = 64.0;
@@ -74,8 +74,8 @@ impl Branching for Floats<'_> {
 pub(super) fn apply(function: Unary, a: f64) -> f64 {
     match function {
         Unary::Negate => -a,
-        Unary::Sin => Scalar::sin_cos(a).0.clamp(-1.0, 1.0),
-        Unary::Cos => Scalar::sin_cos(a).1.clamp(-1.0, 1.0),
+        Unary::Sin => sine_and_cosine(a).0.clamp(-1.0, 1.0),
+        Unary::Cos => sine_and_cosine(a).1.clamp(-1.0, 1.0),
         Unary::Exp => libm::exp(a),
         Unary::Log => libm::log(a),
         Unary::Sqrt => libm::sqrt(a),

@@ -26,11 +26,10 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     let mut accepted = options.accept.clone();
     accepted.sort_unstable();
     accepted.dedup();
-    if let Some(path) = &options.certificate
-        && let Err(error) = certificate(path, &scenario, report)
-    {
-        return complain(&error);
-    }
+    let unproven = match options.certificate.as_deref().map(|path| certificate(path, &scenario, report)).transpose() {
+        Ok(unproven) => unproven.unwrap_or_default(),
+        Err(error) => return complain(&error),
+    };
     let predicted = || predictions(&scenario.setup, options.thorough, &mut |_| ControlFlow::Continue(()));
     let predictions = options.predict.then(predicted).flatten();
     if options.json {
@@ -53,17 +52,27 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
             show_predictions(&scenario.setup, predictions, console);
         }
         conclude(report, &accepted, console);
+        if !unproven.is_empty() {
+            console.line(format_args!(
+                "{FAIR}without a proof in the certificate{FAIR:#}: {}; nobody but this program can check that",
+                unproven.join(", ")
+            ));
+        }
     }
     let practical = !options.practical || promise.practical.worst() != Some(PracticalAnswer::Inadequate);
     if report.worst_without(&accepted).is_fine() && practical { Status::Fine } else { Status::Missed }
 }
 
-/// Writes the answers with their proofs. A waiver changes no answer.
-fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<(), Plain<String>> {
+/// Writes the answers with their proofs, and gives what is claimed without one. A waiver changes no answer.
+fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<Vec<&'static str>, Plain<String>> {
     let certificate = certify(&scenario.setup, report);
+    let mut unproven: Vec<_> =
+        certificate.statements.iter().filter(|it| it.is_unproven()).map(|statement| statement.id.name()).collect();
+    unproven.dedup();
     let document = certificate_document(scenario, env!("CARGO_PKG_VERSION"), &certificate);
     // The alternate form is indented.
-    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", shown(path))))
+    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", shown(path))))?;
+    Ok(unproven)
 }
 
 /// What was waived, and what it all comes to.

@@ -3,10 +3,8 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::reference::{
-    Estimates, Exchange, Heard, Measured, Position, PositionVelocity, Reference, ReferenceOut, Sliding,
-};
-use forwardstep_core::{Kernel, LengthError, dispatch};
+use forwardstep_core::LengthError;
+use forwardstep_core::reference::{Estimates, Exchange, Position, PositionVelocity, Reference};
 
 use super::assembly::Assembly;
 use super::error::SetupError;
@@ -55,7 +53,7 @@ pub(super) fn reference<X: Transmits>(assembly: &Assembly<'_>) -> Result<AnyRefe
     if reference.sliding().is_some() && setup.following().is_none() {
         return Err(SetupError::SignWithoutLeader { reference: name });
     }
-    Ok(Arc::new(Dispatched(reference)))
+    Ok(reference)
 }
 
 /// The reference dynamics of one agent by itself, by its number.
@@ -73,72 +71,4 @@ pub fn reference_dynamics(setup: &Setup, agent: usize) -> Result<Dynamics, Setup
         setup::Exchange::PositionVelocity => Dynamics::PositionVelocity(reference(&assembly)?),
         setup::Exchange::Estimates => Dynamics::Estimates(reference(&assembly)?),
     })
-}
-
-/// Reference dynamics whose right-hand side is compiled for every instruction set, as nothing can be inlined into it from
-/// behind a pointer.
-struct Dispatched<F>(F);
-
-impl<F: Reference> Reference for Dispatched<F> {
-    type Exchange = F::Exchange;
-
-    fn agents(&self) -> usize {
-        self.0.agents()
-    }
-
-    fn vectors(&self) -> usize {
-        self.0.vectors()
-    }
-
-    fn derivatives(&self) -> usize {
-        self.0.derivatives()
-    }
-
-    fn sliding(&self) -> Option<&Sliding> {
-        self.0.sliding()
-    }
-
-    fn is_affine(&self) -> bool {
-        self.0.is_affine()
-    }
-
-    fn evaluate(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        state: &[f64],
-        heard: Heard<'_, F::Exchange>,
-        out: ReferenceOut<'_>,
-    ) -> Result<(), LengthError> {
-        dispatch(Evaluate { reference: &self.0, axes, measured, state, heard, out })
-    }
-
-    fn start(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        given: &[f64],
-        heard: Heard<'_, F::Exchange>,
-        state: &mut [f64],
-    ) -> Result<(), LengthError> {
-        self.0.start(axes, measured, given, heard, state)
-    }
-}
-
-struct Evaluate<'a, 'h, F: Reference> {
-    reference: &'a F,
-    axes: usize,
-    measured: Measured<'a>,
-    state: &'a [f64],
-    heard: Heard<'h, F::Exchange>,
-    out: ReferenceOut<'a>,
-}
-
-impl<F: Reference> Kernel for Evaluate<'_, '_, F> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.reference.evaluate(self.axes, self.measured, self.state, self.heard, self.out)
-    }
 }

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use forwardstep_core::Scalar;
 use forwardstep_core::agent::{Clipped, Inbox, StepError};
 use forwardstep_core::plant::total;
 use forwardstep_core::sampled::Sampled;
 use forwardstep_core::signal::{Block, Signal};
+use forwardstep_core::sine_and_cosine;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -235,7 +235,7 @@ impl Sensor {
 /// logarithms from the standard library, whose last bit depends on the processor.
 fn normal(draw: &mut ChaCha8Rng) -> [f64; 2] {
     let radius = libm::sqrt(-2.0 * libm::log(1.0 - draw.random::<f64>()));
-    let (sine, cosine) = Scalar::sin_cos(core::f64::consts::TAU * draw.random::<f64>());
+    let (sine, cosine) = sine_and_cosine(core::f64::consts::TAU * draw.random::<f64>());
     [radius * cosine, radius * sine]
 }
 

@@ -1,7 +1,5 @@
 //! A delay that rises and drops.
 
-use forwardstep_core::Scalar;
-
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
 use crate::quantity::{LARGEST, MOST_EVENTS, QuantityError, at_most, few, not_negative, positive, within};
 
@@ -45,7 +43,7 @@ impl DelayFunction for SawTooth {
 
     fn value(&self, piece: &DelayPiece, t_s: f64) -> f64 {
         let SawTooth { min_s, max_s, period_s, .. } = *self;
-        Scalar::mul_add((max_s - min_s) / period_s, t_s - piece.start_s, min_s).clamp(min_s, max_s)
+        libm::fma((max_s - min_s) / period_s, t_s - piece.start_s, min_s).clamp(min_s, max_s)
     }
 
     fn known(&self) -> Known {

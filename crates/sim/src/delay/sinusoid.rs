@@ -2,7 +2,7 @@
 
 use core::f64::consts::TAU;
 
-use forwardstep_core::Scalar;
+use forwardstep_core::sine_and_cosine;
 
 use super::{Arrivals, DelayFunction, DelayPiece, Known};
 use crate::quantity::{LARGEST, MOST_EVENTS, QuantityError, at_most, few, not_negative, positive, within};
@@ -40,9 +40,9 @@ impl DelayFunction for Sinusoid {
     }
 
     fn value(&self, _: &DelayPiece, t_s: f64) -> f64 {
-        let angle = Scalar::mul_add(TAU / self.period_s, t_s, self.phase_rad);
+        let angle = libm::fma(TAU / self.period_s, t_s, self.phase_rad);
         // Rounding must not make a delay whose amplitude equals its mean negative.
-        Scalar::mul_add(self.amplitude_s, Scalar::sin_cos(angle).0, self.mean_s).max(0.0)
+        libm::fma(self.amplitude_s, sine_and_cosine(angle).0, self.mean_s).max(0.0)
     }
 
     fn known(&self) -> Known {

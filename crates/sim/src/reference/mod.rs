@@ -7,6 +7,7 @@
 mod backstepping;
 mod consensus;
 mod desired;
+mod dispatched;
 mod linear;
 mod tracking;
 
@@ -22,6 +23,7 @@ use std::sync::Arc;
 
 use forwardstep_core::reference::{Estimates, Position, PositionVelocity, Reference};
 
+use self::dispatched::Dispatched;
 use crate::closed_loop::{Assembly, SetupError};
 use crate::setup::{AgentSetup, Exchange, Setup};
 use crate::system::Known;
@@ -166,16 +168,16 @@ pub enum Dynamics {
 impl Dynamics {
     /// Of agents that exchange positions.
     pub fn position(reference: impl Reference<Exchange = Position>) -> Dynamics {
-        Dynamics::Position(Arc::new(reference))
+        Dynamics::Position(Arc::new(Dispatched(reference)))
     }
 
     /// Of agents that exchange positions and velocities.
     pub fn position_velocity(reference: impl Reference<Exchange = PositionVelocity>) -> Dynamics {
-        Dynamics::PositionVelocity(Arc::new(reference))
+        Dynamics::PositionVelocity(Arc::new(Dispatched(reference)))
     }
 
     /// Of agents that exchange estimates of their leader.
     pub fn estimates(reference: impl Reference<Exchange = Estimates>) -> Dynamics {
-        Dynamics::Estimates(Arc::new(reference))
+        Dynamics::Estimates(Arc::new(Dispatched(reference)))
     }
 }

@@ -13,10 +13,10 @@ mod pieces;
 mod spline;
 mod waves;
 
-use forwardstep_core::Scalar;
 use forwardstep_core::controller::{Jet, JetsBuffer};
 use forwardstep_core::expression::{Expression, Interval, KinkError, MOST_DERIVATIVES, search, weighted};
 use forwardstep_core::sampled::Motion;
+use forwardstep_core::sine_and_cosine;
 use thiserror::Error;
 
 use crate::formula::{Witness, times_s};
@@ -113,7 +113,7 @@ impl Path {
                 out.fill(0.0);
                 out.iter_mut().take(1).for_each(|value| *value = *offset);
                 for wave in waves {
-                    let (sin, cos) = Scalar::sin_cos(wave.angle(t_s));
+                    let (sin, cos) = sine_and_cosine(wave.angle(t_s));
                     let mut size = wave.amplitude;
                     for (value, turn) in out.iter_mut().zip([sin, cos, -sin, -cos].into_iter().cycle()) {
                         *value += size * turn;
@@ -252,7 +252,7 @@ impl Motion for Trajectory {
 
 impl Sinusoid {
     fn angle(&self, t_s: f64) -> f64 {
-        self.rad_per_s.mul_add(t_s, self.phase_rad)
+        libm::fma(self.rad_per_s, t_s, self.phase_rad)
     }
 }
 
@@ -282,7 +282,7 @@ fn sinusoids(offset: f64, waves: &[Sinusoid], weights: &[f64], end_s: Option<f64
         let mut sum = Interval { low: middle, high: middle };
         for wave in waves {
             let (size, phase) = parts(wave);
-            let angle = |t_s: f64| wave.rad_per_s.mul_add(t_s, phase);
+            let angle = |t_s: f64| libm::fma(wave.rad_per_s, t_s, phase);
             let (a, b) = (angle(from), angle(to));
             let swing = Interval { low: a.min(b), high: a.max(b) }.sine();
             let (a, b) = (size * swing.low, size * swing.high);
@@ -293,7 +293,7 @@ fn sinusoids(offset: f64, waves: &[Sinusoid], weights: &[f64], end_s: Option<f64
     let path = |t_s: f64| {
         waves.iter().fold(middle, |sum, wave| {
             let (size, phase) = parts(wave);
-            sum + size * Scalar::sin_cos(wave.rad_per_s.mul_add(t_s, phase)).0
+            sum + size * sine_and_cosine(libm::fma(wave.rad_per_s, t_s, phase)).0
         })
     };
     let part = search(0.0, end_s, CLOSE, enclose, path).with_room(ROUNDING * (middle.abs() + size));

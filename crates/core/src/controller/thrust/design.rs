@@ -1,9 +1,9 @@
 //! What can be chosen about the control of a vehicle.
 
-use crate::Scalar;
 use crate::attitude::{Quaternion, rotate};
 use crate::controller::Trouble;
 use crate::signal::Signal;
+use crate::sine_and_cosine;
 
 /// Which of the paper's controllers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub enum Floor {
 impl Yaw {
     /// ω₃ where the heading to keep is `heading`.
     pub(super) fn turn(self, attitude: Quaternion, heading: f64) -> f64 {
-        let (sin, cos) = Scalar::sin_cos(heading);
+        let (sin, cos) = sine_and_cosine(heading);
         let look = rotate(attitude, [1.0, 0.0, 0.0]);
         self.rate + self.gain * (look[0] * sin - look[1] * cos)
     }

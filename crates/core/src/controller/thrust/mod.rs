@@ -85,7 +85,7 @@ use crate::reference::{
     Consensus, Heard, Measured, Position, Reference, ReferenceOut, RootSet, RootsError, polynomial,
 };
 use crate::signal::{Block, Signal};
-use crate::{LengthError, Scalar};
+use crate::{LengthError, sine_and_cosine};
 
 /// Control of a thrust-propelled vehicle by its thrust and its angular velocity.
 ///
@@ -374,7 +374,7 @@ impl Thrust {
     /// d/dt of the ω asked for, for a body that turns with `omega`; of ω₁ and ω₂ under (46) it is taken for zero.
     fn foresee(&self, flight: &Flight, measured: VehicleState<'_>, state: &[f64], omega: [f64; 3]) -> [f64; 3] {
         let heading = state.get(self.design.reference_len() + 1).copied().unwrap_or_default();
-        let (sin, cos) = Scalar::sin_cos(heading);
+        let (sin, cos) = sine_and_cosine(heading);
         let look = rotate(*measured.attitude, [1.0, 0.0, 0.0]);
         let d_look = rotate(*measured.attitude, [0.0, omega[2], -omega[1]]);
         let Yaw { rate, gain, .. } = self.yaw;

@@ -23,7 +23,7 @@ const ADAPTIVE: ThrustDesign = ThrustDesign::Adaptive { alpha_star: 2.0, gamma_s
 /// An offset that moves, with its derivatives.
 fn offset(t: f64) -> [Jet; 3] {
     let wave = |size: f64, rate: f64| -> Jet {
-        let (sin, cos) = Scalar::sin_cos(rate * t + 0.4);
+        let (sin, cos) = sine_and_cosine(rate * t + 0.4);
         let r = rate;
         [size * sin, size * r * cos, -size * r * r * sin, -size * r * r * r * cos, size * r * r * r * r * sin]
     };
