@@ -730,6 +730,31 @@ class FalseProofs(unittest.TestCase):
         self.accepted("formulas", "bounded-weights", at("0"), weight("t"))
         self.rejected("formulas", "bounded-delays", "no such time", at("0"), delay("t"))
 
+    def test_what_becomes_of_a_weight_or_a_delay_in_the_end(self):
+        ends = lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "limit", "edge": ["mass-1", "mass-2", 1]})
+        weight = lambda text: ('"2.5 + sin(t) + 1.5*sin(2*t)"', f'"{text}"')  # noqa: E731
+        delay = lambda text: ('"0.2 + 0.1*sin(2*pi*t/3)"', f'"{text}"')  # noqa: E731
+        for text in ("exp(-t)", "1/(1 + t)", "2 - t/(1 + t)*3", "1 + t"):
+            self.accepted("formulas", "bounded-weights", ends, weight(text))
+        for text in ("0.5 + exp(-t)", "t/(1 + t)"):
+            self.rejected("formulas", "bounded-weights", "stays near", ends, weight(text))
+        # A delay may come to zero, and not below.
+        self.accepted("formulas", "bounded-delays", ends, delay("2 - t/(1 + t)*3"))
+        for text in ("exp(-t)", "1/(1 + t)", "0.5 + exp(-t)"):
+            self.rejected("formulas", "bounded-delays", "stays near", ends, delay(text))
+
+    def test_links_that_lose_every_packet(self):
+        loses = lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "loses-all", "edge": ["mass-1", "mass-2", 1]})
+        link = lambda loss: ('delay.formula_s = "0.2 + 0.1*sin(2*pi*t/3)"',  # noqa: E731
+                             f"delay.packets = {{ period_s = 0.25, latency_s = 0.08, seed = 41{loss} }}")
+        self.accepted("formulas", "bounded-delays", loses, link(", loss.random = { probability = 1 }"))
+        for loss in ("", ", loss.random = { probability = 0.5 }", ", loss.bursts = { enter = 1, leave = 0.1 }",
+                     ", loss.random = { probability = 1, most_consecutive = 3 }"):
+            self.rejected("formulas", "bounded-delays", "does not lose every packet", loses, link(loss))
+        self.rejected("formulas", "bounded-delays", "does not lose every packet", loses)
+
     def test_groups_that_a_leader_does_not_reach(self):
         def groups(*stated):
             return lambda entry: entry.update(answer="violated", proof={"kind": "cut", "groups": [list(group) for group in stated]})
