@@ -708,6 +708,64 @@ class FalseProofs(unittest.TestCase):
         self.rejected("six-arms-over-radio", "bounded-delays", "lacks the link", lambda entry: entry["proof"]["given"].pop())
         self.rejected("six-arms-over-radio", "bounded-delays", "more than the proof shows", lambda entry: entry.update(answer="holds"))
 
+    def test_no_piece_shows_nothing(self):
+        none = lambda entry: entry["proof"]["enclosures"][0].update(cells=0, within=["1", "2"])  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "must be some", none)
+        one_end = lambda entry: entry["proof"]["enclosures"][0].update(within=["0", "9", "1"])  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "must have two ends", one_end)
+
+    def test_times_at_which_a_weight_or_a_delay_is_too_small(self):
+        at = lambda t_s: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "below", "t_s": t_s, "edge": ["mass-1", "mass-2", 1]})
+        weight = lambda text: ('"2.5 + sin(t) + 1.5*sin(2*t)"', f'"{text}"')  # noqa: E731
+        delay = lambda text: ('"0.2 + 0.1*sin(2*pi*t/3)"', f'"{text}"')  # noqa: E731
+        self.accepted("formulas", "bounded-weights", at("2"), weight("1 - t"))
+        self.accepted("formulas", "bounded-delays", at("2"), delay("1 - t"))
+        # Where it is positive, and before the start.
+        self.rejected("formulas", "bounded-weights", "no such time", at("1"))
+        self.rejected("formulas", "bounded-delays", "no such time", at("1"))
+        self.rejected("formulas", "bounded-weights", "before the start", at("-2"), weight("1 + t"))
+        self.rejected("formulas", "bounded-delays", "before the start", at("-2"), delay("1 + t"))
+        # A weight of zero is none, a delay of zero is one.
+        self.accepted("formulas", "bounded-weights", at("0"), weight("t"))
+        self.rejected("formulas", "bounded-delays", "no such time", at("0"), delay("t"))
+
+    def test_what_becomes_of_a_weight_or_a_delay_in_the_end(self):
+        ends = lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "limit", "edge": ["mass-1", "mass-2", 1]})
+        weight = lambda text: ('"2.5 + sin(t) + 1.5*sin(2*t)"', f'"{text}"')  # noqa: E731
+        delay = lambda text: ('"0.2 + 0.1*sin(2*pi*t/3)"', f'"{text}"')  # noqa: E731
+        for text in ("exp(-t)", "1/(1 + t)", "2 - t/(1 + t)*3", "1 + t"):
+            self.accepted("formulas", "bounded-weights", ends, weight(text))
+        for text in ("0.5 + exp(-t)", "t/(1 + t)"):
+            self.rejected("formulas", "bounded-weights", "stays near", ends, weight(text))
+        # A delay may come to zero, and not below.
+        self.accepted("formulas", "bounded-delays", ends, delay("2 - t/(1 + t)*3"))
+        for text in ("exp(-t)", "1/(1 + t)", "0.5 + exp(-t)"):
+            self.rejected("formulas", "bounded-delays", "stays near", ends, delay(text))
+
+    def test_links_that_lose_every_packet(self):
+        loses = lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "loses-all", "edge": ["mass-1", "mass-2", 1]})
+        link = lambda loss: ('delay.formula_s = "0.2 + 0.1*sin(2*pi*t/3)"',  # noqa: E731
+                             f"delay.packets = {{ period_s = 0.25, latency_s = 0.08, seed = 41{loss} }}")
+        self.accepted("formulas", "bounded-delays", loses, link(", loss.random = { probability = 1 }"))
+        for loss in ("", ", loss.random = { probability = 0.5 }", ", loss.bursts = { enter = 1, leave = 0.1 }",
+                     ", loss.random = { probability = 1, most_consecutive = 3 }"):
+            self.rejected("formulas", "bounded-delays", "does not lose every packet", loses, link(loss))
+        self.rejected("formulas", "bounded-delays", "does not lose every packet", loses)
+
+    def test_groups_that_a_leader_does_not_reach(self):
+        def groups(*stated):
+            return lambda entry: entry.update(answer="violated", proof={"kind": "cut", "groups": [list(group) for group in stated]})
+
+        arms, gone = [f"arm-{k}" for k in range(1, 5)], ('["leader", "arm-1"], ', "")
+        self.accepted("theorem-8", "leader-reaches-all", groups(arms), gone)
+        # The leader hears nobody anyway, and with him everybody is a group.
+        for stated in ([["leader"]], [["leader", *arms]]):
+            self.rejected("theorem-8", "leader-reaches-all", "without the leader", groups(*stated))
+        self.rejected("theorem-8", "leader-reaches-all", "without the leader", groups(arms, ["leader"]), gone)
+
     def test_numbers(self):
         self.rejected("theorem-2", "real-roots", "below all roots", lambda entry: entry["proof"].update(value="1.0000000000000001"))
         self.rejected("theorem-2", "real-roots", "positive bound", lambda entry: entry["proof"].update(value="0"))

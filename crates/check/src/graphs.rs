@@ -131,7 +131,7 @@ fn only_delays_change(schedule: &Schedule) -> bool {
 /// The edges among agents, without those from the leader.
 pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
     let leader = setup.leader();
-    let among = |edge: &&Edge| Some(edge.from) != leader && Some(edge.to) != leader;
+    let among = |edge: &&Edge| Some(edge.from) != leader;
     let one_way = setup.network.schedule.graphs.iter().find_map(|graph| {
         let weights: HashMap<(usize, usize), Weight> =
             graph.iter().map(|edge| ((edge.from, edge.to), edge.weight)).collect();

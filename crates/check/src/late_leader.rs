@@ -29,14 +29,19 @@ pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
     }
     let asked: Vec<f64> = rows.iter().zip(&needed).map(|(row, each)| each + MORE * most * row.degree).collect();
     let c = solved(&rows, &asked)?;
-    let exceeds = rows.iter().zip(&c).zip(&needed).all(|((row, own), needed)| {
+    let exceeds = exceeds(&rows, &c, &needed);
+    let largest = c.into_iter().fold(0.0, f64::max);
+    exceeds.then_some(largest / following.alpha * (1.0 + 4.0 * f64::EPSILON)).filter(|bound| bound.is_finite())
+}
+
+/// Whether L c ≥ `needed` in all components, whatever was rounded.
+fn exceeds(rows: &[Row], c: &[f64], needed: &[f64]) -> bool {
+    rows.iter().zip(c).zip(needed).all(|((row, own), needed)| {
         let heard: f64 = row.heard.iter().map(|(from, weight)| weight * c[*from]).sum();
         let terms = row.terms as f64 + 4.0;
         let rounding = terms * f64::EPSILON * (row.degree * own + heard + needed);
         row.degree * own - heard - rounding >= *needed
-    });
-    let largest = c.into_iter().fold(0.0, f64::max);
-    exceeds.then_some(largest / following.alpha * (1.0 + 4.0 * f64::EPSILON)).filter(|bound| bound.is_finite())
+    })
 }
 
 /// What one follower hears.
@@ -113,4 +118,29 @@ fn solved(rows: &[Row], asked: &[f64]) -> Option<Vec<f64>> {
         }
     }
     Some(c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A follower that hears the leader with weight one, and one that hears the first with a weight of three and has `terms` neighbours.
+    fn rows(terms: usize) -> [Row; 2] {
+        let row = |degree, terms, heard| Row { degree, terms, weight_s: 0.0, heard };
+        [row(1.0, 1, Vec::new()), row(4.0, terms, vec![(0, 3.0)])]
+    }
+
+    #[test]
+    fn a_bound_exceeds_what_is_needed_by_as_many_roundings_as_there_are_terms() {
+        const STEP: f64 = f64::EPSILON;
+        // One term, and four more, of 1 + 1: ten steps.
+        let alone = |c: f64| exceeds(&rows(1)[..1], &[c], &[1.0]);
+        assert_eq!([1.0, 1.0 + 9.0 * STEP, 1.0 + 11.0 * STEP].map(alone), [false, false, true]);
+        // A hundred and four of 8 + 6 + 2.
+        let both = |c: f64| exceeds(&rows(100), &[2.0, c], &[1.0, 2.0]);
+        let least = 104.0 * 16.0 / 4.0 * STEP;
+        assert_eq!([2.0, 2.0 + 0.99 * least, 2.0 + 1.01 * least].map(both), [false, false, true]);
+        // The first is not exempt.
+        assert!(!exceeds(&rows(1), &[0.5, 9.0], &[1.0, 2.0]));
+    }
 }

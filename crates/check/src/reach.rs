@@ -192,9 +192,99 @@ fn looks(target: &Trajectory, reach: &Reach, end_s: f64) -> Seen {
 /// Where a target that is a formula is certainly out of reach after the end of the run.
 fn out_later(target: &Trajectory, reach: &Reach, end_s: f64) -> Option<Out> {
     let room = ROUNDING * reach.most;
-    let low = if reach.has_inner_edge() { (reach.least - room).max(0.0) } else { f64::NEG_INFINITY };
-    let range = Interval { low: low * low.abs(), high: (reach.most + room) * (reach.most + room) };
+    // Below zero, where no place is too near, it is below every square.
+    let [low, high] = [reach.least - room, reach.most + room];
+    let range = Interval { low: low * low.abs(), high: high * high };
     let found = target.leaves_later(&reach.from, range, end_s)?;
     let side = if found.value > range.high { ReachSide::Beyond } else { ReachSide::Inside };
     Some(Out { side, t_s: found.t_s, distance_m: found.value.max(0.0).sqrt() })
+}
+
+#[cfg(test)]
+mod tests {
+    use forwardstep_core::expression::Expression;
+    use forwardstep_sim::trajectory::{Sinusoid, Spline};
+
+    use super::*;
+
+    fn reach(from: [f64; 2], [least, most]: [f64; 2], exact: bool) -> Reach {
+        Reach { from: from.to_vec(), least, most, exact }
+    }
+
+    fn wave(offset: f64, amplitude: f64) -> Path {
+        Path::Sinusoids { offset, waves: vec![Sinusoid { amplitude, rad_per_s: 1.0, phase_rad: 0.0 }] }
+    }
+
+    fn is_near([found, expected]: [f64; 2]) -> bool {
+        (found - expected).abs() < 1e-9
+    }
+
+    #[test]
+    fn a_place_is_out_of_reach_by_more_than_rounding_and_in_the_middle_only_where_there_is_an_edge() {
+        let out = |extent, exact, distance_m: f64| reach([0.0; 2], extent, exact).out(distance_m);
+        let (beyond, inside) = (Some(ReachSide::Beyond), Some(ReachSide::Inside));
+        let (extent, room) = ([0.25, 2.0], 2e-9);
+        for exact in [true, false] {
+            assert_eq!([2.0 + 0.5 * room, 2.0 + 2.0 * room].map(|x| out(extent, exact, x)), [None, beyond]);
+            assert_eq!([0.25 - 0.5 * room, 0.25 - 2.0 * room].map(|x| out(extent, exact, x)), [None, inside]);
+        }
+        // An arm with links alike has its edge where it folds up; of a tree without a least distance none is known.
+        assert_eq!([0.5 * room, room, 2.0 * room].map(|x| out([0.0, 2.0], true, x)), [inside, inside, None]);
+        assert_eq!([0.0, 1.0].map(|x| out([0.0, 2.0], false, x)), [None; 2]);
+    }
+
+    #[test]
+    fn prop_bounds_of_coordinates_bound_the_distance_from_both_sides() {
+        let extent = |from, paths: [Path; 2]| {
+            let target = Trajectory::new(paths.to_vec()).ok()?;
+            let found = super::extent(&target, &reach(from, [0.0, 9.0], true));
+            Some([found.least, found.most])
+        };
+        let is = |found: Option<[f64; 2]>, [least, most]: [f64; 2]| {
+            found.is_some_and(|found| {
+                found[0] <= least && found[1] >= most && is_near([found[0], least]) && is_near([found[1], most])
+            })
+        };
+        // At rest, from a place beside zero.
+        assert!(is(extent([4.0, -2.0], [wave(1.0, 0.0), wave(2.0, 0.0)]), [5.0, 5.0]));
+        // On either side of where it is counted from: 3 to 4 to the right, and 12 to 13 below; and across it.
+        let beside = [153.0_f64.sqrt(), 185.0_f64.sqrt()];
+        assert!(is(extent([1.0, 1.0], [wave(4.5, 0.5), wave(-11.5, 0.5)]), beside));
+        assert!(is(extent([1.0, 1.0], [wave(1.5, 1.0), wave(-11.5, 0.5)]), [12.0, (2.25_f64 + 169.0).sqrt()]));
+    }
+
+    #[test]
+    fn between_two_looks_a_target_gets_no_farther_than_its_speed_takes_it() {
+        // 3 and 4 units in a hundred seconds: half a look at 0.05 1/s, until 400 s.
+        let line = |by: f64| Spline::new(vec![0.0, 100.0], vec![0.0, by]).map(Path::Spline);
+        let seen = Seen { nearest: 1.0, farthest: 6.0, out: None };
+        let reach = reach([0.0; 2], [0.0, 8.0], true);
+        let bound = |paths: Vec<Path>| by_speed(&Trajectory::new(paths).ok()?, &reach, &seen, 400.0);
+        let speed = |path: &Path| path.bounds(&[0.0, 1.0], Some(400.0)).size();
+        let paths: Vec<Path> = [line(3.0), line(4.0)].into_iter().flatten().collect();
+        let room = 0.05 * speed(&paths[0]).hypot(speed(&paths[1])) + 8e-9;
+        let found = bound(paths).map(|found| [found.least, found.most]);
+        assert!(found.is_some_and(|[least, most]| {
+            (1.0 - least - room).abs() < 1e-12 && (most - 6.0 - room).abs() < 1e-12 && room > 2e-3
+        }));
+        // What does not move is where it was seen, up to rounding; of what goes on after the last look nothing is known.
+        let at_rest = bound(vec![wave(1.0, 0.0), Path::Formula(Expression::number(2.0))]);
+        assert!(at_rest.is_some_and(|found| (found.most - 6.0 - 8e-9).abs() < 1e-12));
+        assert_eq!(bound(vec![wave(1.0, 0.0), wave(1.0, 0.5)]), None);
+    }
+
+    #[test]
+    fn a_formula_leaves_its_reach_later_by_more_than_rounding() {
+        let out = |extent, distance: f64| {
+            let target =
+                Trajectory::new([distance, 0.0].map(|at| Path::Formula(Expression::number(at))).to_vec()).ok()?;
+            out_later(&target, &reach([0.0; 2], extent, true), 20.0).map(|out| out.side)
+        };
+        let (extent, room) = ([0.25, 2.0], 2e-9);
+        let (beyond, inside) = (Some(ReachSide::Beyond), Some(ReachSide::Inside));
+        assert_eq!([2.0 + 0.5 * room, 2.0 + 2.0 * room].map(|x| out(extent, x)), [None, beyond]);
+        assert_eq!([0.25 - 0.5 * room, 0.25 - 2.0 * room].map(|x| out(extent, x)), [None, inside]);
+        // No square is below zero.
+        assert_eq!(out([0.0, 2.0], 0.0), None);
+    }
 }

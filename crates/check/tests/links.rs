@@ -154,6 +154,9 @@ fn weights_and_delays_are_judged_by_what_they_do_for_all_time() {
     let drifting = t().sin_of() * 0.5 - (t() * 1.0001).sin_of() * 0.5 + 0.9;
     let (answer, because) = weight(drifting);
     assert!(answer != Answer::Holds && !because.contains("uniformly"), "{answer:?}: {because}");
+    // No more is it where its size is taken, which is not shown to stay off zero.
+    let (answer, because) = weight((t().sin_of() * 0.5 - (t() * 1.0001).sin_of() * 0.5 + 0.9).abs_of());
+    assert!(answer == Answer::NotShown && because.contains("that they do so for ever could not be shown"), "{because}");
     let (answer, because) = weight(one() + one() / (t() - 100.0).power(2.0));
     assert!(answer != Answer::Holds && !because.contains("uniformly"), "{answer:?}: {because}");
     // A sum of two waves is larger than the sum of their lower bounds.

@@ -14,7 +14,7 @@ mod vehicles;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;
 
-use crate::common::kinds::{alone, blind_mass};
+use crate::common::kinds::{alone, blind_mass, chain};
 use crate::common::{arm, column, edge, masses, run, setup};
 use forwardstep_check::{
     Finding, NoPrediction, NotFixed, PowerBound, SamplingMargin, along, mean_power_w, practical, predict,
@@ -112,6 +112,11 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     };
     assert_eq!(said(&|setup| setup.agents[2].law = blind().law), Some(NoPrediction::Law), "one is enough");
     assert_eq!(predict(&alone(blind())).err(), Some(NoPrediction::Law));
+    // A chain of derivatives has one under its own law alone.
+    let mut chained = alone(chain(&Expression::number(1.0), 1, true));
+    assert_eq!(predict(&chained).err(), None);
+    chained.agents[0].law = blind().law;
+    assert_eq!(predict(&chained).err(), Some(NoPrediction::Law));
     let tanh = Coupling::Tanh { scale: 1.0 };
     assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoPrediction::NotFixed(NotFixed::Coupling)));
     let control = Control {

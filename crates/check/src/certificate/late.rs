@@ -225,3 +225,38 @@ impl Algebra for Lates {
 pub(super) fn whole(exponent: &Number) -> Option<i64> {
     exponent.exact().filter(BigRational::is_integer)?.to_i64()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn t() -> Expression {
+        Expression::variable(0)
+    }
+
+    fn within(formula: &Expression) -> [f64; 2] {
+        let Interval { low, high } = late(formula, 1.0).within;
+        [low, high]
+    }
+
+    /// Bounds that are met from outside, by rounding alone.
+    fn is_sharp(formula: &Expression, [low, high]: [f64; 2]) -> bool {
+        let found = within(formula);
+        found[0] <= low && found[1] >= high && found[0] > low - 1e-9 && found[1] < high + 1e-9
+    }
+
+    #[test]
+    fn waves_of_one_angle_add_up_as_vectors_whatever_stands_for_their_numbers() {
+        let six = || Expression::number(2.0) * Expression::number(3.0);
+        assert!(is_sharp(&(six() * t().sin_of() + t().cos_of() * 8.0), [-10.0, 10.0]));
+        assert!(is_sharp(&(t().sin_of() * six() - t().cos_of() / Expression::number(0.125)), [-10.0, 10.0]));
+        // Of an angle that has a number in it, which is no number itself.
+        for angle in [t() + 1.0, Expression::number(1.0) + t(), t() * 2.0] {
+            assert!(is_sharp(&(angle.clone().sin_of() * 3.0 + angle.cos_of() * 4.0), [-5.0, 5.0]));
+        }
+        // By what varies waves are not scaled: ±(1 + 1/t) is at most two from one second on.
+        let varies = Expression::number(1.0) / t() + 1.0;
+        let found = within(&(varies * t().sin_of() + t().cos_of()));
+        assert!(found[0] <= -2.3 && found[1] >= 2.3, "{found:?}");
+    }
+}

@@ -91,7 +91,7 @@ impl Limit {
     /// Whether it is positive, where it is clearly not zero.
     fn sign(self) -> Option<bool> {
         match self {
-            Limit::Near(within) => (!within.holds(0.0)).then_some(within.low > 0.0),
+            Limit::Near(within) => (within.low > 0.0).then_some(true).or((within.high < 0.0).then_some(false)),
             Limit::Up => Some(true),
             Limit::Down => Some(false),
             Limit::Unknown => None,
@@ -197,5 +197,43 @@ impl Algebra for Limits {
             Limit::Up | Limit::Down | Limit::Unknown => Limit::Unknown,
         };
         Part::new(limit, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn t() -> Expression {
+        Expression::variable(0)
+    }
+
+    fn is_zero(formula: Expression) -> bool {
+        limit(&formula) == Limit::Near(Interval::point(0.0))
+    }
+
+    #[test]
+    fn nothing_is_known_of_what_grows_beside_what_may_come_to_zero() {
+        // 1 ± sin t touches zero for ever, 1.5 ± sin t does not.
+        let beside = |mean: f64| limit(&(t().log_of() * (t().sin_of() + mean)));
+        assert_eq!([-1.5, -1.0, 0.0, 1.0, 1.5].map(beside), {
+            let unknown = Limit::Unknown;
+            [Limit::Down, unknown, unknown, unknown, Limit::Up]
+        });
+    }
+
+    #[test]
+    fn exponentials_that_fall_overcome_powers_from_either_side_and_nothing_else_does() {
+        let falls = || (-t()).exp_of();
+        let products = [falls() * t(), t() * falls(), -falls() * t(), t() * -falls(), falls() / t(), falls() * falls()];
+        assert_eq!(products.map(is_zero), [true; 6]);
+        // One that rises, one of what is no quotient of polynomials, here 1/√t, and what only has one inside.
+        assert_eq!(limit(&(t().exp_of() * t())), Limit::Up);
+        assert_eq!(limit(&((-(t().log_of() / 2.0)).exp_of() * t())), Limit::Unknown);
+        assert_eq!(limit(&(falls().cos_of() * t())), Limit::Up);
+        // Neither does what is no exponential, or what is divided by one.
+        assert_eq!([limit(&((-t()).abs_of() * t())), limit(&((-t()).tanh_of() * t()))], [Limit::Up, Limit::Down]);
+        assert_eq!(limit(&(-t() * t())), Limit::Down);
+        assert_eq!([t() / falls(), falls() * t().log_of()].map(is_zero), [false; 2]);
     }
 }

@@ -129,3 +129,53 @@ impl Ratio {
         value(&self.over) * fall / value(&self.under)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Coefficients from t⁰ on, above and below.
+    fn ratio(over: &[i64], under: &[i64]) -> Option<Ratio> {
+        let [over, under] =
+            [over, under].map(|all| all.iter().map(|each| BigRational::from_integer((*each).into())).collect());
+        Ratio::new(over, under)
+    }
+
+    fn limit(over: &[i64], under: &[i64]) -> Option<Result<[f64; 2], bool>> {
+        Some(ratio(over, under)?.limit()?.map(|within| [within.low, within.high]))
+    }
+
+    #[test]
+    fn what_grows_faster_than_what_it_is_divided_by_exceeds_every_bound_and_nothing_else_does() {
+        assert_eq!(limit(&[0, 0, 1], &[5, 1]), Some(Err(true)));
+        assert_eq!([limit(&[0, 0, -1], &[5, 1]), limit(&[0, 0, 1], &[5, -1])], [Some(Err(false)); 2]);
+        // Of one degree it is the quotient of the first coefficients, of a lower one zero, as of nothing.
+        let near = |found: Option<Result<[f64; 2], bool>>, expected: f64| matches!(found, Some(Ok([low, high])) if low <= expected && expected <= high && high - low < 1e-12);
+        assert!(near(limit(&[1, 4], &[-3, 2]), 2.0));
+        assert!(near(limit(&[7], &[0, 1]), 0.0) && near(limit(&[], &[1]), 0.0));
+        assert_eq!(limit(&[1], &[]), None);
+    }
+
+    #[test]
+    fn a_quotient_is_bounded_from_a_time_on_as_far_as_it_has_no_pole_later() {
+        let from = |over: &[i64], under: &[i64], from_s| {
+            ratio(over, under)?.from(from_s).map(|Interval { low, high }| [low, high])
+        };
+        let is = |found: Option<[f64; 2]>, [low, high]: [f64; 2]| {
+            found.is_some_and(|found| {
+                (low - 1e-9..=low).contains(&found[0]) && (found[1] == high || (high..high + 1e-9).contains(&found[1]))
+            })
+        };
+        // t/(1 + t) from 1 on, 1/t from 2 on.
+        assert!(is(from(&[0, 1], &[1, 1], 1.0), [0.5, 1.0]) && is(from(&[1], &[0, 1], 2.0), [0.0, 0.5]));
+        // t² from 3 on; both are bounded by the power alone.
+        assert!(is(from(&[0, 0, 1], &[1], 3.0), [9.0, f64::INFINITY]));
+        let falls = from(&[0, 0, -1], &[1], 3.0);
+        assert!(falls.is_some_and(|[low, high]| low == f64::NEG_INFINITY && (-9.0..-9.0 + 1e-9).contains(&high)));
+        // With a pole at one second, before it and after.
+        for over in [&[1][..], &[0, 1], &[0, 0, 1]] {
+            assert_eq!(from(over, &[-1, 1], 0.5), None, "{over:?}");
+            assert!(from(over, &[-1, 1], 1.5).is_some(), "{over:?}");
+        }
+    }
+}

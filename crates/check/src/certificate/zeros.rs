@@ -165,4 +165,25 @@ mod tests {
         assert_ne!(core((wave() + 1.0).steps()), plain.steps());
         assert_ne!(core((wave() * wave()).steps()), plain.steps());
     }
+
+    #[test]
+    fn a_zero_is_passed_only_where_signs_on_both_sides_are_clear_and_differ() {
+        let t = || Expression::variable(0);
+        let zero = || Expression::number(0.0);
+        let passes = |entry: Expression, t_s: f64| changes_sign(&[zero(), entry], t_s).is_some();
+        let wave = || (t() * 0.1).cos_of();
+        let quarter_s = 5.0 * std::f64::consts::PI;
+        // It falls through zero, and its opposite rises.
+        assert!(passes(wave(), quarter_s) && passes(-wave(), quarter_s));
+        // Where it is only touched, or not met at all, from above and from below.
+        for at_s in [2.0 * quarter_s, 1.0] {
+            assert!(!passes(wave() + 1.0, at_s) && !passes(-(wave() + 1.0), at_s), "{at_s}");
+        }
+        // What is zero at one end has not passed: from the start on, and from one second on.
+        assert!(!passes(t(), 0.0) && !passes(-t(), 0.0));
+        let steps = [(-t() + 1.0).steps(), zero().steps(), &[Step::Binary(Binary::Max)]].concat();
+        let ends = Expression::new(steps).unwrap_or_else(|_| t());
+        assert_eq!([0.5, 2.0].map(|t_s| ends.value(&[t_s])), [0.5, 0.0]);
+        assert!(!passes(ends.clone(), 1.0) && !passes(-ends, 1.0));
+    }
 }

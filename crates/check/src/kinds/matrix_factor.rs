@@ -9,8 +9,8 @@
 //! - *Determinant.* The product of the other m − 1 singular values is at most the power m − 1 of their quadratic mean, so
 //!   σ_min ≥ |det A| ((m − 1)/‖A‖_F²)^((m−1)/2) with Frobenius' norm; for m = 1 it is |A|.
 //!
-//! All sums are rounded outwards. The power is not, by which a few units in the last place could be gained: its base is moved down by much
-//! more than they are.
+//! All sums are rounded outwards. The power is not, by which a few units in the last place could be gained: it is moved down by much more
+//! than they are.
 
 use forwardstep_core::expression::{Expression, Interval};
 use num_rational::BigRational;
@@ -71,8 +71,8 @@ fn dominance(entries: &[Vec<Interval>]) -> f64 {
         let sum = others.fold(Interval::point(0.0), |sum, j| sum + size(i, j) + size(j, i));
         (Interval::point(own) - sum * Interval::point(0.5)).low
     };
-    // Not a number, where something has no value, is no bound.
-    (0..entries.len()).map(row).fold(f64::INFINITY, |least, row| if row >= 0.0 { least.min(row) } else { 0.0 })
+    // Not a number, where something has no value, is no bound: of it and zero, zero is taken.
+    (0..entries.len()).map(row).fold(f64::INFINITY, |least, row| least.min(row.max(0.0)))
 }
 
 fn by_determinant(entries: &[Vec<Interval>]) -> f64 {
@@ -85,9 +85,9 @@ fn by_determinant(entries: &[Vec<Interval>]) -> f64 {
     let square = |entry: &Interval| Interval::point(entry.size()) * Interval::point(entry.size());
     let norm = entries.iter().flatten().fold(Interval::point(0.0), |sum, entry| sum + square(entry)).high;
     let others = m.saturating_sub(1) as f64;
-    let bound =
-        if m == 1 { least } else { least * libm::pow(others / norm * (1.0 - ROOM), others / 2.0) * (1.0 - ROOM) };
-    if bound > 0.0 && bound.is_finite() { bound } else { 0.0 }
+    let bound = least * libm::pow(others / norm, others / 2.0) * (1.0 - ROOM);
+    // Where the norm is too small for a number, it is no bound either.
+    if bound.is_finite() { bound.max(0.0) } else { 0.0 }
 }
 
 /// By expansion along the rows from that after `rows.len() − columns.len()` on, over `columns`.
@@ -130,6 +130,42 @@ mod tests {
         for singular in [&[&[1.0, 2.0][..], &[2.0, 4.0]][..], &[&[0.0, 0.0], &[0.0, 1.0]]] {
             assert_eq!(least_everywhere(&numbers(singular)), 0.0);
         }
+    }
+
+    #[test]
+    fn each_bound_by_itself_is_what_its_formula_says_and_zero_where_it_says_nothing() {
+        let dominance = |rows: &[&[f64]]| super::dominance(&enclosed(&numbers(rows)));
+        let by_determinant = |rows: &[&[f64]]| super::by_determinant(&enclosed(&numbers(rows)));
+        let is = |found: f64, expected: f64| found < expected * (1.0 - 0.9 * ROOM) && found > expected * (1.0 - 1e-11);
+        // min(5 − ½ (2 + 1), 3 − ½ (2 + 1)), and none where a row is not larger than the others.
+        assert!((dominance(&[&[5.0, 2.0], &[-1.0, -3.0]]) - 1.5).abs() < 1e-12);
+        assert!((dominance(&[&[-3.0, 2.0], &[-1.0, 5.0]]) - 1.5).abs() < 1e-12);
+        for weak in [&[&[1.0, 2.0][..], &[1.0, 5.0]][..], &[&[5.0, 2.0], &[1.0, 1.0]], &[&[0.0, 0.0], &[0.0, 1.0]]] {
+            assert_eq!(dominance(weak), 0.0);
+        }
+        // With m = 1 the power is one, with m = 3 it is the first; of two rows |det|/‖A‖.
+        assert!(is(by_determinant(&[&[-3.0]]), 3.0));
+        assert!(is(by_determinant(&[&[0.0, 1.0, 0.0], &[0.0, 0.0, -1.0], &[1.0, 0.0, 0.0]]), 2.0 / 3.0));
+        assert!(is(by_determinant(&[&[5.0, 2.0], &[-1.0, -3.0]]), 13.0 / 39.0_f64.sqrt()));
+        // Six rows are expanded, seven are not.
+        let shifted = |m: usize| {
+            let row = |i: usize| (0..m).map(|j| Interval::point(if j == (i + 1) % m { 1.0 } else { 0.0 })).collect();
+            super::by_determinant(&(0..m).map(row).collect::<Vec<_>>())
+        };
+        assert!(is(shifted(6), (5.0_f64 / 6.0).powf(2.5)));
+        assert_eq!(shifted(7), 0.0);
+        // What may have no inverse, and numbers that are too small or too large for their squares.
+        for [low, high] in [[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+            assert_eq!(
+                super::by_determinant(&[vec![Interval { low, high }]]),
+                if low == 1.0 { 1.0 - ROOM } else { 0.0 }
+            );
+        }
+        for size in [1e-160, 1e-200, 1e200] {
+            assert_eq!(by_determinant(&[&[0.0, size], &[size, 0.0]]), 0.0);
+        }
+        let unknown = Interval { low: f64::NAN, high: f64::NAN };
+        assert_eq!(super::dominance(&[vec![Interval::point(2.0), unknown], vec![unknown, Interval::point(2.0)]]), 0.0);
     }
 
     #[test]

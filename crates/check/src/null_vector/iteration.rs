@@ -89,7 +89,7 @@ impl Block {
             let change = (0..SWEEPS).map(|_| self.sweep(&mut u, &zero, |_, x| x)).fold(0.0, |_, last| last);
             visits -= per_sweep * SWEEPS as f64;
             // Rounding keeps it from becoming smaller for ever.
-            if change < 1e-13 && change >= 0.5 * before || change == 0.0 {
+            if change < 1e-13 && change >= 0.5 * before {
                 break;
             }
             before = change;
@@ -159,5 +159,40 @@ mod tests {
         assert!((truth..30.0 * truth).contains(&error), "{error}");
         // Where the inequalities cannot be verified nothing is claimed.
         assert_eq!(block.enclose(&u, &[0.0; 4], kept), f64::INFINITY);
+    }
+
+    /// Weights that are mutual have a constant null vector; what a pair has too much goes by a thousandth a sweep.
+    #[test]
+    fn sweeping_ends_when_nothing_but_rounding_changes() {
+        for faint in [1e-3, 1.0] {
+            let edges = [(0, 1, 1.0), (1, 0, 1.0), (2, 3, 3.0), (3, 2, 3.0), (1, 2, faint), (2, 1, faint)];
+            let Enclosed { u, error } = Block::new(vec![1.0, 1.0 + faint, 3.0 + faint, 3.0], &edges).solve();
+            let [least, most] = [f64::min, f64::max].map(|of| u.iter().copied().reduce(of).unwrap_or(f64::NAN));
+            assert!(most - least <= 2.0 * error * most && error < 1e-7, "{u:?} ± {error}");
+            assert!(most - least < 1e-9 * most, "{u:?}");
+        }
+        // One that hears itself through another alone is right at once, and stays.
+        let Enclosed { u, error } = Block::new(vec![1.0, 1.0], &[(0, 1, 1.0), (1, 0, 1.0)]).solve();
+        assert!(u[0] == u[1] && error < 1e-13, "{u:?} ± {error}");
+    }
+
+    #[test]
+    fn what_is_enclosed_is_exact_to_the_roundings_that_are_counted() {
+        // u is (1, 1), one edge each way: t = (0, 1) has a margin of 1 less 25 roundings, and the residual is 25 roundings of 2.
+        let block = Block::new(vec![1.0, 1.0], &[(0, 1, 1.0), (1, 0, 1.0)]);
+        let rounding = 25.0 * f64::EPSILON;
+        let error = block.enclose(&[1.0, 1.0], &[0.0, 1.0], 0);
+        assert!((error / (2.0 * rounding) - 1.0).abs() < 1e-12, "{error}");
+        // A margin of a quarter of what it should be is enough, one of less by rounding is not, nor is an entry of t that is not positive.
+        let of = |t: f64| block.enclose(&[1.0, 1.0], &[0.0, t], 0);
+        assert!([0.26, 0.25, 0.0, -1.0].map(of).map(f64::is_finite) == [true, false, false, false]);
+        // Twice as slow is twice as far; what x has of û does not count.
+        assert!(
+            (of(2.0) / error - 1.0).abs() < 1e-12
+                && (block.enclose(&[1.0, 1.0], &[3.0, 4.0], 0) / error - 1.0).abs() < 1e-12
+        );
+        // An excess of a tenth is a residual of a tenth, by a margin of one.
+        let excess = block.enclose(&[1.0, 1.1], &[0.0, 1.1], 0);
+        assert!((excess - 0.1 / 1.1).abs() < 1e-12, "{excess}");
     }
 }

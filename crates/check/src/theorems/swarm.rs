@@ -22,15 +22,7 @@ const WIDER: f64 = 1e-12;
 
 /// k λ against what the derivation asks for: L − λ* is positive definite exactly if λ > λ*.
 fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvidence {
-    let (alpha, beta) = (following.alpha, following.beta);
-    let root = beta * beta - 4.0 * alpha;
-    if root < -WIDER * beta * beta {
-        return FollowingEvidence::ComplexRoots;
-    }
-    // The bound grows with κ₀, so that is taken as large as rounding of the difference allows.
-    let kappa = 0.5 * (beta - (root - 8.0 * f64::EPSILON * beta * beta).max(0.0).sqrt());
-    let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
-    let least = least * (1.0 + WIDER);
+    let Some(least) = least(following.alpha, following.beta) else { return FollowingEvidence::ComplexRoots };
     let Some(edges) = setup.network.schedule.constant_graph() else { return FollowingEvidence::GraphSwitches };
     let vertices = setup.network.agents;
     let followers: Vec<usize> = (0..vertices).filter(|vertex| setup.leader() != Some(*vertex)).collect();
@@ -48,4 +40,41 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvid
     let shown =
         ShiftedLaplacian::new(followers.len(), &weights, shift).is_some_and(|matrix| matrix.is_shown_definite());
     if shown { FollowingEvidence::CouplingExceeds { least } } else { FollowingEvidence::CouplingNotShown { least } }
+}
+
+/// What k λ must exceed; `None` where p² + β p + α has no real roots.
+fn least(alpha: f64, beta: f64) -> Option<f64> {
+    let root = beta * beta - 4.0 * alpha;
+    if root < -WIDER * beta * beta {
+        return None;
+    }
+    // The bound grows with κ₀, so that is taken as large as rounding of the difference allows.
+    let kappa = 0.5 * (beta - (root - 8.0 * f64::EPSILON * beta * beta).max(0.0).sqrt());
+    let least = beta + kappa * kappa * kappa * kappa / (2.0 * (beta * beta - alpha) * (beta - kappa));
+    Some(least * (1.0 + WIDER))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prop_rounding_does_not_lower_what_the_coupling_must_exceed_where_roots_nearly_meet() {
+        for k in 1..2000 {
+            let beta = 0.1 + 0.7 * f64::from(k) * 0.618_033_988_749_894_9;
+            let mut alpha = 0.25 * beta * beta;
+            for _ in 0..6 {
+                // Rounded once, so that next to nothing is lost where the two nearly cancel.
+                let root = beta.mul_add(beta, -4.0 * alpha);
+                let kappa = 0.5 * (beta - root.max(0.0).sqrt());
+                let truth = beta + kappa.powi(4) / (2.0 * (beta * beta - alpha) * (beta - kappa));
+                assert!(least(alpha, beta).is_some_and(|least| least > truth && least < truth * (1.0 + 1e-6)));
+                alpha = alpha.next_down();
+            }
+        }
+        // Far apart it is sharp; κ₀ = 1 of p² + 4 p + 3.
+        let truth = 4.0 + 1.0 / (2.0 * 13.0 * 3.0);
+        assert!(least(3.0, 4.0).is_some_and(|least| least > truth && least < truth * (1.0 + 2e-12)));
+        assert_eq!(least(1.0 + 1e-9, 2.0), None);
+    }
 }

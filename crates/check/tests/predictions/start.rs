@@ -100,3 +100,30 @@ fn eq_what_v_can_add_to_a_torque_counts_what_s_adds_to_the_acceleration_that_is_
     let expected = 3.0 * 0.4 + size * (25.0 / 3.0 + 2.0 * 0.4 * 0.4_f64).sqrt() + through;
     assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
 }
+
+#[test]
+fn eq_what_v_can_add_to_a_torque_counts_those_alone_who_are_heard_in_the_graph_that_adds_most() {
+    let mut setup = three(Exchange::PositionVelocity);
+    let phase = |edges| Phase { edges, dwell_s: 0.5 };
+    let [much, little] = [vec![edge(0, 1, 1.5, 0), edge(2, 1, 0.5, 0), edge(1, 0, 7.0, 0)], vec![edge(0, 1, 0.75, 0)]];
+    setup.network.schedule = Schedule::periodic(vec![phase(much), phase(little)]);
+    setup.network.delays = vec![Delay::constant(0.0)];
+    for (agent, (theta, off)) in setup.agents.iter_mut().zip([(4.0, 1.0), (3.0, 1.5), (1.0, 0.5)]) {
+        agent.robot.theta = vec![theta];
+        (agent.start.q, agent.start.dq) = (vec![0.0; 2], vec![0.0; 2]);
+        agent.roots_per_s = [2.0].into();
+        let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![theta + off], bounds: None });
+    }
+    // All rest, so that Y ϑ and Y are zero. |s| ≤ Δm/√γ/√m of everybody; ż has −(κ + d) s of its own in it and w s of whom it hears.
+    let s = |theta: f64, off: f64| off / 2.0_f64.sqrt() / theta.sqrt();
+    let expected = 5.0 * s(3.0, 1.5) + 3.0 * ((2.0 + 2.0) * s(3.0, 1.5) + 1.5 * s(4.0, 1.0) + 0.5 * s(1.0, 0.5));
+    for peak in predicted(&setup).peak_torques.iter().filter(|peak| peak.agent == 1) {
+        assert!((peak.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{peak:?} {expected}");
+    }
+    let velocities_unheard = Setup { exchange: Exchange::Position, ..setup };
+    let expected = 5.0 * s(3.0, 1.5) + 3.0 * (2.0 + 2.0) * s(3.0, 1.5);
+    let peaks = predicted(&velocities_unheard).peak_torques;
+    let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
+    assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
+}
