@@ -2,8 +2,10 @@
 
 use std::fs;
 
+use serde_json::Value;
+
 use super::{RING, judged, masses, outcome_of_pair};
-use crate::support::folder;
+use crate::support::{folder, forwardstep, stdout};
 
 fn accepted(scenario: &str, id: &str, answer: &str) {
     assert_eq!(judged(scenario, id), (answer.to_owned(), "accepted".to_owned()), "{id}: {scenario}");
@@ -182,4 +184,23 @@ fn prop_no_claim_about_drawn_formulas_is_rejected() {
         }
     }
     assert!(claims > 15, "{claims}");
+}
+
+/// Whoever wants a certificate hears from the program itself what it could not prove.
+#[test]
+fn claims_without_a_proof_are_named() {
+    let folder = folder();
+    let said = |motion: &str| {
+        fs::write(folder.path().join("own.toml"), led(&format!("formulas = [\"{motion}\"]"), "9")).unwrap();
+        let printed = stdout(&forwardstep(&folder, &["check", "own.toml", "--certificate", "own.json"]));
+        let document: Value = serde_json::from_slice(&fs::read(folder.path().join("own.json")).unwrap()).unwrap();
+        let claims = document["hypotheses"].as_array().unwrap().iter().filter(|it| it["answer"] == "holds");
+        let bare: Vec<_> = claims.filter(|it| it["proof"].is_null()).map(|it| it["id"].as_str().unwrap()).collect();
+        let line = printed.lines().find_map(|line| line.strip_prefix("without a proof in the certificate: "));
+        (bare.join(", "), line.map(|line| line.split(';').next().unwrap().to_owned()))
+    };
+    assert_eq!(said("sin(t)"), (String::new(), None));
+    let (bare, named) = said("atan(sin(1.3*t) - t)");
+    assert!(!bare.is_empty());
+    assert_eq!(named, Some(bare));
 }
