@@ -564,15 +564,14 @@ def derivative(tree):
     da, db = derivative(a), derivative(b)
     if kind in "+-": return plus(da, db if kind == "+" else negated(db))
     if kind == "*": return plus(times(da, b), times(a, db))
-    if kind == "/":
-        rest = negated(times(a, times(db, ("^", b, Fraction(-2))))) if has_variable(b) else ZERO
-        return rest if da == ZERO else plus(("/", da, b), rest)
+    if kind == "/" and not has_variable(b): return da if da == ZERO else ("/", da, b)
+    if kind == "/": return plus(da if da == ZERO else ("/", da, b), negated(times(a, times(db, ("^", b, Fraction(-2))))))
     if kind == "^":
         # No power below the first is made, whose slope would divide by what may be zero.
         return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
     outer = {"neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree,
              "log": ("/", ONE, a), "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
-             "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2))))}
+             "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2)))) if quotient(a) else ("^", ("f", "cos", tree), Fraction(2))}
     decided(kind == "f" and tree[1] in outer, "a derivative has kinks")
     return times(da, outer[tree[1]])
 
@@ -585,14 +584,16 @@ def settles(tree):
     return low == high or (low, high) != WHOLE and not turns_for_ever(tree) and all(map(settles, parts_of(tree)))
 
 # Whether a formula that is continuous is so uniformly from a time on: it has a limit that is finite, or a bounded slope, or is made of
-# what is so by what does not stretch, or by what has values on a bounded set, and is uniformly continuous there.
+# what is so by what does not stretch, or by what has values on a bounded set, and is uniformly continuous there; √(c + x²) is
+# uniformly continuous in x: its slope is bounded but near a root, where it is the root of what has a bounded one.
 @once
 def steady(tree, t):
+    match tree:
+        case "f", "sqrt", ("+", ("number", _), ("^", x, 2)) | ("+", ("^", x, 2), ("number", _)): return steady(x, t)
     if not has_variable(tree) or tree[0] == "t" or settles(tree) and not infinite(limit(tree)[0]): return True
     plain = tree[0] in ("+", "-", "min", "max") or tree[0] == "f" and tree[1] not in ("exp", "log")
     compact = all(finite(part, [t]) for part in parts_of(tree)) and attempt(in_one_pass, tree, t) is not None
-    made = (plain or compact) and all(steady(part, t) for part in parts_of(tree))
-    return made or finite(attempt(derivative, tree) or ("state", ""), [t])
+    return (plain or compact) and all(steady(part, t) for part in parts_of(tree)) or finite(attempt(derivative, tree) or ("state", ""), [t])
 
 # (q, n) of a constant q πⁿ, by the polynomials that it is made of with π as their variable.
 def multiple(tree):

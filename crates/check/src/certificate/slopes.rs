@@ -9,6 +9,8 @@ use num_traits::{One, Zero};
 struct Slope {
     value: Expression,
     slope: Option<Expression>,
+    /// Whether it is a quotient of polynomials, of which a checker knows the limits.
+    rational: bool,
 }
 
 /// The derivative of a formula; `None` where it has kinks.
@@ -68,15 +70,15 @@ impl Algebra for Slopes {
     type Value = Slope;
 
     fn number(&mut self, number_: &Number) -> Slope {
-        Slope { value: Expression::number(number_.clone()), slope: Some(number(0.0)) }
+        Slope { value: Expression::number(number_.clone()), slope: Some(number(0.0)), rational: true }
     }
 
     fn variable(&mut self, index: usize) -> Slope {
-        Slope { value: Expression::variable(index), slope: Some(number(1.0)) }
+        Slope { value: Expression::variable(index), slope: Some(number(1.0)), rational: true }
     }
 
     fn unary(&mut self, function: Unary, a: Slope) -> Slope {
-        let Slope { value: inner, slope } = a;
+        let Slope { value: inner, slope, rational } = a;
         let a = || inner.clone();
         let outer = match function {
             Unary::Negate => Some(number(-1.0)),
@@ -87,11 +89,13 @@ impl Algebra for Slopes {
             Unary::Sqrt => Some(number(0.5) / a().sqrt_of()),
             Unary::Abs => None,
             Unary::Tanh => Some(number(1.0) - a().tanh_of().power(2.0)),
-            Unary::Atan => Some(number(1.0) / (number(1.0) + a().power(2.0))),
+            Unary::Atan if rational => Some(number(1.0) / (number(1.0) + a().power(2.0))),
+            // The same: as cos² it stays bounded beside all that its own derivatives are made of, whatever `a` does.
+            Unary::Atan => Some(a().under(Unary::Atan).cos_of().power(2.0)),
         };
         let constant = slope.as_ref().is_some_and(|slope| is(slope, 0.0));
         let slope = if constant { slope } else { slope.zip(outer).map(|(slope, outer)| times(slope, outer)) };
-        Slope { value: inner.under(function), slope }
+        Slope { value: inner.under(function), slope, rational: rational && function == Unary::Negate }
     }
 
     fn binary(&mut self, function: Binary, a: Slope, b: Slope) -> Slope {
@@ -107,11 +111,13 @@ impl Algebra for Slopes {
             Binary::Min | Binary::Max if is(&da, 0.0) && is(&db, 0.0) => Some(number(0.0)),
             Binary::Min | Binary::Max => None,
         });
-        Slope { value: a.value.with(b.value, function), slope }
+        let rational = a.rational && b.rational && !matches!(function, Binary::Min | Binary::Max);
+        Slope { value: a.value.with(b.value, function), slope, rational }
     }
 
     fn power(&mut self, a: Slope, exponent: &Number) -> Slope {
         let value = a.value.clone().power(exponent.clone());
+        let rational = a.rational && exponent.exact().is_some_and(|exponent| exponent.is_integer());
         let slope = a.slope.zip(exponent.exact()).map(|(slope, exponent)| {
             let one = BigRational::one();
             let less = &exponent - &one;
@@ -125,6 +131,6 @@ impl Algebra for Slopes {
             };
             times(slope, outer)
         });
-        Slope { value, slope }
+        Slope { value, slope, rational }
     }
 }
