@@ -190,7 +190,12 @@ proptest! {
     #[test]
     fn prop_more_derivatives_leave_the_first_five_as_they_are(expression in any_expression(), at in -3.0..3.0_f64) {
         let bits = |jet: &[f64]| jet[..5].iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-        let five = bits(&expression.jet(at));
+        let five = expression.jet(at);
+        // Without a value there are no derivatives, and the signs of the zeros in their place say nothing.
+        if five[0].is_nan() {
+            return Ok(());
+        }
+        let five = bits(&five);
         for count in [9, 17, 33] {
             let more = bits(&long(&expression, count, at));
             let same = |a: &u64, b: &u64| a == b || f64::from_bits(*a).is_nan() && f64::from_bits(*b).is_nan();
