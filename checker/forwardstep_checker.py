@@ -589,7 +589,7 @@ def settles(tree):
 @once
 def steady(tree, t):
     match tree:
-        case "f", "sqrt", ("+", ("number", _), ("^", x, 2)) | ("+", ("^", x, 2), ("number", _)): return steady(x, t)
+        case "f", "sqrt", ("+", ("number", _), ("^", x, 2)) | ("+", ("^", x, 2), ("number", _)) if steady(x, t): return True
     if not has_variable(tree) or tree[0] == "t" or settles(tree) and not infinite(limit(tree)[0]): return True
     plain = tree[0] in ("+", "-", "min", "max") or tree[0] == "f" and tree[1] not in ("exp", "log")
     compact = all(finite(part, [t]) for part in parts_of(tree)) and attempt(in_one_pass, tree, t) is not None

@@ -1523,9 +1523,18 @@ class Enclosures(unittest.TestCase):
                                ("min(sqrt(t), 1)", True), ("min(sqrt(t), abs(sin(t)))", True), ("tanh(t^2)", True), ("t*exp(-t)", True),
                                ("exp(-t^2)*sin(t)", True), ("sin(t^2)/(1 + t)", True), ("sin(sqrt(t)) + cos(t)^2", True), ("log(2 + sin(t))", True),
                                ("min(1, abs(t*sin(t)))", False), ("sin(exp(t))", False), ("tanh(t*sin(t))", False), ("sin(t)*sin(t^2)", False),
-                               ("tanh(t^2)*sin(t^2)", False), ("abs(sin(t*sin(t)))", False)):
+                               ("tanh(t^2)*sin(t^2)", False), ("abs(sin(t*sin(t)))", False), ("sqrt(1 + t^2)", True), ("sqrt((t + sin(t))^2 + 2)", True),
+                               ("sqrt(1 + (t^2)^2)", False), ("sqrt(1 + t^3)", False), ("sqrt(1 + sqrt(2 + t)^2)", True)):
             tree = checker.formula(text)
             for start in (checker.LATE, checker.FOR_EVER): self.assertEqual(checker.steady(tree, start), expected, text)
+
+    def test_slopes_are_those_of_differences(self):
+        for text in ("atan(t)", "atan(sin(2*t) - t)", "atan(exp(-t))", "sqrt(1 + t^2)", "tanh(t)/(2 + cos(t))", "t^2/3", "3/(1 + t)", "log(2 + t)*exp(-t)"):
+            tree = checker.formula(text)
+            slope, moved = checker.derivative(tree), checker.Fraction(1, 10**6)
+            for t in (checker.Fraction(k, 3) for k in range(1, 12)):
+                after, before = (checker.enclose(tree, (at, at)) for at in (t + moved, t - moved))
+                self.assertAlmostEqual(float(checker.enclose(slope, (t, t))[0]), float((after[0] - before[0]) / (2 * moved)), 9, f"{text} at {t}")
 
     def test_limits_are_those_of_calculus(self):
         half = math.pi / 2

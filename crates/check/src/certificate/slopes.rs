@@ -134,3 +134,42 @@ impl Algebra for Slopes {
         Slope { value, slope, rational }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_are_those_that_jets_have() {
+        let t = || Expression::variable(0);
+        let turning = (t() * 2.0).sin_of() - t();
+        let formulas = [
+            t().under(Unary::Atan),
+            turning.under(Unary::Atan),
+            (-t()).exp_of().under(Unary::Atan),
+            (t().power(2.0) + 1.0).sqrt_of(),
+            t().tanh_of() / (t().cos_of() + 2.0),
+            (t() + 2.0).log_of() * t().exp_of(),
+        ];
+        for formula in formulas {
+            let slope = slope(&formula);
+            for at in [0.1, 0.7, 1.9, 5.3] {
+                let (found, expected) = (slope.as_ref().map(|slope| slope.eval(at)), formula.jet(at)[1]);
+                let close = |found: f64| (found - expected).abs() < 1e-12 * (1.0 + expected.abs());
+                assert!(found.is_some_and(close), "{formula:?} at {at}: {found:?} {expected}");
+            }
+        }
+    }
+
+    /// Derivatives of arctangents stay bounded: of a quotient by its limit, of anything else by its cosine.
+    #[test]
+    fn three_derivatives_of_an_arctangent_are_bounded_whatever_is_inside() {
+        let t = || Expression::variable(0);
+        for inside in [t(), t() * 3.0 + 1.0, (t() * 1.3).sin_of() - t()] {
+            let found = derivatives(&inside.under(Unary::Atan), 3);
+            let ever = Interval { low: 0.0, high: f64::INFINITY };
+            let bounded = |each: &Expression| super::super::enclosure::late_or_whole(each, ever).is_finite();
+            assert!(found.len() == 4 && found.iter().all(bounded), "{found:?}");
+        }
+    }
+}

@@ -54,7 +54,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         conclude(report, &accepted, console);
         if !unproven.is_empty() {
             console.line(format_args!(
-                "{FAIR}without a proof in the certificate{FAIR:#}: {}; nobody but this program can check that",
+                "{FAIR}without a proof in the certificate{FAIR:#}: {}; only this program vouches for that",
                 unproven.join(", ")
             ));
         }
