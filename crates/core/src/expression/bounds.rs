@@ -35,12 +35,14 @@ impl Expression {
     /// [`MOST_DERIVATIVES`]. Allocates nothing.
     pub fn derivatives(&self, x: f64, out: &mut [f64]) {
         self.derivatives_over(Floats::new(&[x]), out);
+        without_a_value(out);
     }
 
     /// The same by the branches of |a|, min and max that are active right after `since`: one-sided derivatives where a piece
     /// begins or ends. `switches` is what [`switches`](Self::switches) found.
     pub fn derivatives_on(&self, switches: &[Switch], since: f64, x: f64, out: &mut [f64]) {
         self.derivatives_over(Floats::on_piece(&[x], switches, since), out);
+        without_a_value(out);
     }
 
     /// By the shortest list of coefficients that is long enough.
@@ -193,6 +195,13 @@ fn highest(from: f64, to: f64, close: f64, bound: impl Fn(f64, f64) -> f64, valu
         }
     }
     stretches.peek().map_or(f64::INFINITY, |stretch| bound_of(stretch.0))
+}
+
+/// Without a value there are no derivatives, though the rules may give some.
+fn without_a_value(out: &mut [f64]) {
+    if out.first().is_some_and(|value| value.is_nan()) {
+        out.fill(f64::NAN);
+    }
 }
 
 /// A number such that a larger one belongs to a larger `f64`, as [`f64::total_cmp`] orders them; its own inverse.

@@ -94,6 +94,13 @@ fn a_derivative_that_does_not_exist_leaves_those_below_it_alone() {
 }
 
 #[test]
+fn regress_what_has_no_value_has_no_derivatives() {
+    for nowhere in [(-x()).log_of(), (-x()).sqrt_of() * 2.0, (-x()).power(0.5) + 1.0] {
+        assert!(nowhere.jet(1.5).iter().chain(&long(&nowhere, 12, 1.5)).all(|value| value.is_nan()), "{nowhere:?}");
+    }
+}
+
+#[test]
 fn a_constant_stays_one_where_a_function_has_no_slope() {
     assert_eq!(Expression::number(0.0).sqrt_of().jet(1.0), [0.0; 5]);
     assert_eq!(Expression::number(0.0).sqrt_of().enclose_jet(Interval::point(1.0)), [Interval::point(0.0); 5]);
@@ -124,8 +131,14 @@ proptest! {
             // How much cancels in the formula is what its enclosure shows.
             let width = bounds[k].high - bounds[k].low;
             if width.is_finite() && bounds.iter().all(|c| c.size() < 1e6) {
-                let room = 1e-7 * (1.0 + graph[k].abs()) + 1e3 * width;
-                prop_assert!((jet[k] - graph[k]).abs() <= room, "{} {:?} {:?}", k, jet, graph);
+                let room = |size: f64| 1e-7 * (1.0 + size.abs()) + 1e3 * width;
+                if graph[k].is_nan() {
+                    // Infinity times zero on the way, as of the root of what is zero for ever: the enclosure knows better.
+                    let near = room(jet[k]);
+                    prop_assert!(bounds[k].low - near <= jet[k] && jet[k] <= bounds[k].high + near, "{} {:?}", k, jet);
+                } else {
+                    prop_assert!((jet[k] - graph[k]).abs() <= room(graph[k]), "{} {:?} {:?}", k, jet, graph);
+                }
             }
         }
     }
@@ -189,17 +202,12 @@ fn no_derivative_is_given_where_there_are_none_and_a_kink_has_only_the_first() {
 proptest! {
     #[test]
     fn prop_more_derivatives_leave_the_first_five_as_they_are(expression in any_expression(), at in -3.0..3.0_f64) {
-        let bits = |jet: &[f64]| jet[..5].iter().map(|value| value.to_bits()).collect::<Vec<_>>();
         let five = expression.jet(at);
-        // Without a value there are no derivatives, and the signs of the zeros in their place say nothing.
-        if five[0].is_nan() {
-            return Ok(());
-        }
-        let five = bits(&five);
         for count in [9, 17, 33] {
-            let more = bits(&long(&expression, count, at));
-            let same = |a: &u64, b: &u64| a == b || f64::from_bits(*a).is_nan() && f64::from_bits(*b).is_nan();
-            prop_assert!(more.iter().zip(&five).all(|(a, b)| same(a, b)), "{:?}", expression);
+            let more = long(&expression, count, at);
+            // As numbers: of what cancels exactly up to the fourth derivative, and not beyond, zeros differ in their sign.
+            let same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+            prop_assert!(more.iter().zip(&five).all(same), "{:?}", expression);
         }
     }
 
