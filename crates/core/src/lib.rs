@@ -34,7 +34,7 @@ mod taylor;
 mod trig;
 
 pub use definite::Indefinite;
-pub use dispatch::{Kernel, dispatch};
+pub use dispatch::{Kernel, Vectors, dispatch};
 pub use error::{GainError, LengthError};
 pub use gain::{Gain, InverseQuadratic, ResolvedGain};
 pub use scalar::{Lanes, Packed, Scalar};

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::trig;
+use crate::{Kernel, Vectors, dispatch, trig};
 
 /// A number, or several side by side, that robot kernels and laws compute with.
 ///
@@ -68,6 +68,12 @@ pub trait Packed: Scalar {
     /// How many agents.
     const WIDTH: usize;
 
+    /// What a processor must have for kernels of such scalars.
+    type Processor: Copy + Send + Sync + 'static;
+
+    /// Runs a kernel of such scalars.
+    fn run<K: Kernel>(processor: Self::Processor, kernel: K) -> K::Output;
+
     /// Makes one from the value of every lane, numbered from zero.
     fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self;
 
@@ -83,6 +89,13 @@ pub trait Packed: Scalar {
 
 impl Packed for f64 {
     const WIDTH: usize = 1;
+
+    /// Every processor will do.
+    type Processor = ();
+
+    fn run<K: Kernel>((): (), kernel: K) -> K::Output {
+        dispatch(kernel)
+    }
 
     #[inline(always)]
     fn from_lanes(mut lane: impl FnMut(usize) -> f64) -> f64 {
@@ -112,6 +125,12 @@ impl Packed for f64 {
 
 impl<const N: usize> Packed for Lanes<N> {
     const WIDTH: usize = N;
+
+    type Processor = Vectors;
+
+    fn run<K: Kernel>(vectors: Vectors, kernel: K) -> K::Output {
+        vectors.run(kernel)
+    }
 
     #[inline(always)]
     fn from_lanes(lane: impl FnMut(usize) -> f64) -> Self {

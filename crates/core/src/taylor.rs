@@ -49,6 +49,7 @@ fn convolved(a: &[f64], b: &[f64], from: usize, k: usize) -> f64 {
 
 impl<const N: usize> Add for Taylor<N> {
     type Output = Self;
+    #[inline(never)]
     fn add(self, b: Self) -> Self {
         Taylor(core::array::from_fn(|k| self.0[k] + b.0[k]))
     }
@@ -56,6 +57,7 @@ impl<const N: usize> Add for Taylor<N> {
 
 impl<const N: usize> Sub for Taylor<N> {
     type Output = Self;
+    #[inline(never)]
     fn sub(self, b: Self) -> Self {
         Taylor(core::array::from_fn(|k| self.0[k] - b.0[k]))
     }

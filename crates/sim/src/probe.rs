@@ -4,7 +4,7 @@
 //! against them is a hundred times coarser than their error.
 
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
-use forwardstep_core::{Lanes, LengthError, Scalar};
+use forwardstep_core::{Kernel, Lanes, LengthError, Scalar, Vectors};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -265,21 +265,36 @@ impl<K: Lagrangian<f64> + Lagrangian<Lanes<8>>> Here<'_, K> {
         if let Some((value, expected)) = first_apart(&self.torque(theta, &ddq, dq)?, &tau) {
             return Ok(Tried::Fails(Identity::Acceleration, value, expected));
         }
-        let wide = |values: &[f64]| values.iter().map(|value| Lanes::<8>::splat(*value)).collect::<Vec<_>>();
-        let mut in_lanes = wide(&vec![0.0; m]);
-        kernel.forward_dynamics(
-            &mut Lagrangian::<Lanes<8>>::scratch(kernel),
-            &wide(q),
-            &wide(dq),
-            &wide(theta),
-            &wide(&tau),
-            &mut in_lanes,
-        )?;
+        let Some(vectors) = Vectors::of_this_processor() else { return Ok(Tried::Holds) };
+        let [q, dq, theta, tau] =
+            [q, dq, *theta, &tau[..]].map(|values| values.iter().map(|value| Lanes::splat(*value)).collect::<Vec<_>>());
+        let mut in_lanes = vec![Lanes::ZERO; m];
+        vectors.run(InLanes { kernel, q: &q, dq: &dq, theta: &theta, tau: &tau, ddq: &mut in_lanes })?;
         let in_lanes: Vec<f64> = in_lanes.iter().map(|lanes| lanes.0[7]).collect();
         Ok(match first_apart(&in_lanes, &ddq) {
             Some((value, expected)) => Tried::Fails(Identity::Lanes, value, expected),
             None => Tried::Holds,
         })
+    }
+}
+
+/// What many robots of one kind do where the processor has vector instructions, and only there.
+struct InLanes<'a, K> {
+    kernel: &'a K,
+    q: &'a [Lanes<8>],
+    dq: &'a [Lanes<8>],
+    theta: &'a [Lanes<8>],
+    tau: &'a [Lanes<8>],
+    ddq: &'a mut [Lanes<8>],
+}
+
+impl<K: Lagrangian<Lanes<8>>> Kernel for InLanes<'_, K> {
+    type Output = Result<(), LengthError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let InLanes { kernel, q, dq, theta, tau, ddq } = self;
+        kernel.forward_dynamics(&mut kernel.scratch(), q, dq, theta, tau, ddq)
     }
 }
 

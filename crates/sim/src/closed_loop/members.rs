@@ -4,7 +4,7 @@ use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::total;
 use forwardstep_core::reference::{Estimates, Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
-use forwardstep_core::{Gain, InverseQuadratic, Lanes, ResolvedGain};
+use forwardstep_core::{Gain, InverseQuadratic, Lanes, ResolvedGain, Vectors};
 
 use super::assembly::{Assembly, effort_limits};
 use super::columns::Columns;
@@ -64,10 +64,11 @@ where
     // What a held torque does is not what the balance balances.
     let balance = setup.solver.balance && !sampled;
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
-    Ok(if members.len() < LANES_FROM {
-        Box::new(Population::<R, X, f64>::new(robot, members, reference, sampled, balance))
-    } else {
-        Box::new(Population::<R, X, Lanes<8>>::new(robot, members, reference, sampled, balance))
+    Ok(match Vectors::of_this_processor().filter(|_| members.len() >= LANES_FROM) {
+        Some(vectors) => {
+            Box::new(Population::<R, X, Lanes<8>>::new(robot, vectors, members, reference, sampled, balance))
+        }
+        None => Box::new(Population::<R, X, f64>::new(robot, (), members, reference, sampled, balance)),
     })
 }
 

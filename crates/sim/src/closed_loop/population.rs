@@ -73,6 +73,7 @@ where
     /// `members` share the robot and the reference dynamics; all adapt or none. With `sampled` control will be digital.
     pub(crate) fn new(
         robot: R,
+        processor: S::Processor,
         members: Vec<Member>,
         reference: AnyReference<X>,
         sampled: bool,
@@ -91,7 +92,7 @@ where
             row: Vec::new(),
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
-        let robots = RobotBatch::new(robot, &members, layout);
+        let robots = RobotBatch::new(robot, processor, &members, layout);
         let layer = match reference.sliding() {
             Some(Sliding { choice: Choice::Layer { width }, .. }) if !sampled => {
                 Some(Layer { width: *width, selection: vec![0.0; layout.block()] })

@@ -5,7 +5,7 @@
 
 use forwardstep_core::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
-use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGain, dispatch};
+use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGain};
 
 /// One agent of a population.
 #[derive(Debug)]
@@ -61,13 +61,14 @@ impl Layout {
 pub(crate) struct RobotBatch<R: Lagrangian<S>, S: Packed> {
     pub(crate) robot: R,
     pub(crate) layout: Layout,
+    processor: S::Processor,
     packs: Vec<Pack<S>>,
     pub(crate) work: Work<S, R::Scratch>,
 }
 
 impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
     /// `members` share the robot and the order; all adapt or none.
-    pub(crate) fn new(robot: R, members: &[Member], layout: Layout) -> Self {
+    pub(crate) fn new(robot: R, processor: S::Processor, members: &[Member], layout: Layout) -> Self {
         let packs = (0..members.len()).step_by(S::WIDTH).map(|first| Pack::new(first, members)).collect();
         let (vector, parameters) = (|| vec![S::ZERO; layout.m], || vec![S::ZERO; layout.p]);
         let work = Work {
@@ -87,7 +88,7 @@ impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
             yt_s: parameters(),
             d_theta_hat: parameters(),
         };
-        RobotBatch { robot, layout, packs, work }
+        RobotBatch { robot, layout, processor, packs, work }
     }
 
     /// Number of packs.
@@ -109,7 +110,7 @@ impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
         drive: Drive<'_>,
         dx: Option<&mut [f64]>,
     ) -> Result<(), LengthError> {
-        dispatch(Act { robots: self, pack, x, drive, dx })
+        S::run(self.processor, Act { robots: self, pack, x, drive, dx })
     }
 }
 
@@ -138,7 +139,7 @@ impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let RobotBatch { robot, layout: l, packs, work } = self.robots;
+        let RobotBatch { robot, layout: l, packs, work, .. } = self.robots;
         let pack = &packs[self.pack];
         work.read(*l, pack.first, self.x, self.drive);
         match self.drive.held {
