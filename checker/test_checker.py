@@ -8,6 +8,7 @@ transitive closures, sampling and determinants, where the checker follows trees,
 """
 
 import copy
+import decimal
 import functools
 import itertools
 import json
@@ -904,6 +905,13 @@ class FalseProofs(unittest.TestCase):
         inner = lambda entry: entry["proof"]["bound"].update(within=["0.01", "0.01"])  # noqa: E731
         self.rejected("theorem-6", "target-within-reach", "leaves (1/25, 81/25)", inner, centre)
         self.rejected("theorem-8", "sign-gain", "leaves", lambda entry: entry["proof"]["bounds"][0].update(within=["-2", "1"]))
+        by_entry = lambda number, *within: lambda entry: entry.update(  # noqa: E731
+            proof={"kind": "entry-away", "entry": number, "bound": {"range": "for-ever", "within": list(within)}})
+        self.accepted("theorem-7", "nonzero-quaternion", by_entry(1, "-3", "-2"), ("[0, 0, 0, 1] ", "[-2, 0, 0, 0] "))
+        touches = ("[0, 0, 0, 1] ", '[0, 0, 0, "1 - cos(t)"] ')
+        for within in (("0", "2"), ("-2", "0")):
+            self.rejected("theorem-7", "nonzero-quaternion", "holds zero", by_entry(4, *within), (
+                touches if within[0] == "0" else (touches[0], touches[1].replace("1 - cos(t)", "cos(t) - 1"))))
         for number in (0, 5):
             entry_ = {"kind": "entry-away", "entry": number, "bound": {"range": "for-ever", "within": ["1", "1"]}}
             self.rejected("theorem-7", "nonzero-quaternion", "is no entry", lambda entry: entry.update(proof=entry_))  # noqa: B023
@@ -954,6 +962,13 @@ class FalseProofs(unittest.TestCase):
                 (Path(folder) / "ur5e.urdf").write_text(robot.replace(old, new, 1))
                 found = checker.check(certificate, place_of(name).read_text(), Path(folder), digests=False)
                 self.assertEqual([one[3] for one in found if one[0] == each], [outcome], found)
+
+    def test_the_edge_of_what_a_planar_arm_reaches_is_out_of_reach(self):
+        out = lambda entry: entry.update(answer="violated", proof={"kind": "out-of-reach", "t_s": "0"})  # noqa: E731
+        old = '["0.8 + 0.3*cos(t)", "0.6 + 0.3*sin(t)"]'
+        for edge in ("0.2", "1.8"): self.accepted("theorem-6", "target-within-reach", out, (old, f'["{edge}", "0"]'))
+        for inside in ("0.2000001", "1.7999999"):
+            self.rejected("theorem-6", "target-within-reach", "is no time", out, (old, f'["{inside}", "0"]'))
 
     def test_lengths_of_a_tree_are_those_of_its_geometry(self):
         scenario = checker.Scenario(place_of("task-space-ur5e").read_text(), SCENARIOS)
@@ -1015,6 +1030,8 @@ class FalseProofs(unittest.TestCase):
             self.rejected("saturated-coupling", "input-factor", "is not so", lambda entry: None, change)
         self.accepted("saturated-coupling", "input-factor", factor, small)
         self.rejected("saturated-coupling", "input-factor", "no factor below", factor)
+        # The floor itself is not below it.
+        self.rejected("saturated-coupling", "input-factor", "no factor below", factor, (small[0], small[1].replace("1e-4", "1e-3")))
         # In a state: ψ = 2 + x is 10⁻⁴ at −1.9999.
         there = lambda *state: lambda entry: entry.update(  # noqa: E731
             answer="violated", proof={"kind": "factor", "agent": "cart-1", "state": list(state)})
@@ -1426,6 +1443,8 @@ class FalseProofs(unittest.TestCase):
         self.accepted(name, each, vanishes("90"), over)
         for other in ("89.999999999999999", "0", "-90"): self.rejected(name, each, words, vanishes(other), over)
         self.rejected(name, each, words, vanishes("-90"), target(0, 0, 0, "1 + t/90"))
+        self.accepted(name, each, vanishes("0"), target(0, 0, 0, "t"))
+        self.accepted(name, each, turns(4, "0", "2"), target(0, 0, 0, "cos(t)"))
         # Several entries pass zero together, or nearly.
         self.accepted(name, each, vanishes("90"), target("t/30 - 3", 0, "2 - t/45", "1 - t/90"))
         self.rejected(name, each, words, vanishes("90"), target("t/30 - 3", 0, "1e-30", "1 - t/90"))
@@ -1501,10 +1520,12 @@ class FalseProofs(unittest.TestCase):
         # Each of these has a limit, or is zero. In the first the angle stands still, near a multiple of 2 π, wherever cos t > 0.1.
         stands = "(2*pi + t - atan(sin(t)/max(abs(cos(t)), 0.1)))"
         for target in (f"t*max(0, cos(t) - 0.1)*sin({stands}*(1 - exp(-t)))",
-                       "t*sin(exp(-t))", "(pi - pi)*t*sin(t)", "t*abs(sin(t) - sin(t))", "t*sin(t)*0"):
+                       "t*sin(exp(-t))", "(pi - pi)*t*sin(t)", "t*abs(sin(2*t) - 2*sin(t)*cos(t))", "t*sin(t)*0"):
             judged, found = self.judged(name, each, diverges(), (old, f'"{target}"'))
             self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], (target, found))
+        self.assertTrue(checker.swings(checker.formula("1/(1 - cos(t))")), "without a value at first")
         grows = (old, '"t^3"')
+        self.accepted(name, each, diverges(order=3), (old, '"t^4"'))
         for motion, axis, words in ((0, 1, "is no motion"), (2, 1, "is no motion"), (1, 0, "is no axis"), (1, 2, "is no axis")):
             self.rejected(name, each, words, diverges(motion, axis), grows)
         points = "target.points = { times_s = [1, 2], positions = [[0], [1]] }"
@@ -1634,6 +1655,10 @@ class FalseProofs(unittest.TestCase):
         certificate["agreement"] = {"influence": [[f"arm-{k + 1}", str(int(k == alone))] for k in range(6)]}
         found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
         self.assertIn("is of no fixed network", [one[4] for one in found])
+        varying = ("[network]", '[network]\nweight = "2 + sin(t)"')
+        text = place_of("first-order").read_text().replace(*varying)
+        found = checker.check((self.folder / "first-order.json").read_text(), text, SCENARIOS, digests=False)
+        self.assertIn("is of no fixed network", [one[4] for one in found])
         # Of two closed classes each has a null vector, and no value is agreed upon.
         text = place_of("cut").read_text()
         text = text[:text.index("[[network.phases]]")] + 'edges = [["mass-1", "mass-2"], ["mass-3", "mass-4"]]\n'
@@ -1707,6 +1732,54 @@ class Enclosures(unittest.TestCase):
                 self.assertLessEqual(found[0], found[1])
                 self.assertLess(found[1] - found[0], 1e-25 * max(1, abs(value)))
                 self.assertAlmostEqual(float(found[0]) / max(1, abs(value)), value / max(1, abs(value)), 12)
+
+    def test_functions_are_enclosed_to_sixty_digits(self):
+        """Held against `decimal`, and series in it."""
+        draw, exact = random.Random(9), decimal.Context(prec=160)
+
+        def series(term, step):
+            total, k = decimal.Decimal(0), 1
+            while abs(term) > decimal.Decimal("1e-150"):
+                total, term, k = exact.add(total, term), exact.multiply(term, step(k)), k + 1
+            return total
+
+        def atan(x):
+            if abs(x) > decimal.Decimal("0.1"):
+                return 2 * atan(exact.divide(x, exact.add(1, exact.sqrt(exact.fma(x, x, 1)))))
+            square, total, term, k = exact.multiply(x, x), decimal.Decimal(0), x, 1
+            while abs(term) > decimal.Decimal("1e-150"):
+                total, term, k = exact.add(total, exact.divide(term, k)), exact.minus(exact.multiply(term, square)), k + 2
+            return total
+
+        def value(name, x):
+            square = exact.minus(exact.multiply(x, x))
+            match name:
+                case "sin": return series(x, lambda k: exact.divide(square, 2 * k * (2 * k + 1)))
+                case "cos": return series(decimal.Decimal(1), lambda k: exact.divide(square, 2 * k * (2 * k - 1)))
+                case "exp": return exact.exp(x)
+                case "log": return exact.ln(x)
+                case "sqrt": return exact.sqrt(x)
+                case "tanh": return 1 - exact.divide(2, exact.add(1, exact.exp(2 * x)))
+                case "atan": return atan(x)
+
+        with decimal.localcontext(exact):
+            ranges = {"sin": (-30, 30), "cos": (-30, 30), "exp": (-90, 90), "log": (1e-6, 1e6), "sqrt": (0, 1e6), "tanh": (-9, 9), "atan": (-50, 50)}
+            for name, (low, high) in ranges.items():
+                for _ in range(60):
+                    x = checker.Fraction(draw.choice((draw.uniform(low, high), draw.uniform(0.4, 2.1), round(draw.uniform(1, 9)))))
+                    a, b = (decimal.Decimal(end.numerator) / end.denominator for end in checker.function(name, (x, x)))
+                    true = value(name, decimal.Decimal(x.numerator) / x.denominator)
+                    room = max(abs(true), 1) * decimal.Decimal("1e-120")
+                    self.assertTrue(a - room <= true <= b + room, (name, x))
+                    self.assertLess(b - a, max(abs(true), 1) * decimal.Decimal("1e-40"), (name, x))
+        # Just below a square, and squares.
+        for x in (1 - checker.Fraction(1, 2**2000), checker.Fraction(1, 4), checker.Fraction(2), checker.Fraction(10**50 + 1)):
+            a, b = checker.sqrt_at(x)
+            self.assertTrue(a * a <= x <= b * b and b - a <= 2**-300 * max(1, b), x)
+        # What has no double is still on the stated side.
+        for x in (-2000, -1501, 1501, 2000):
+            a, b = checker.exp_at(checker.Fraction(x))
+            self.assertTrue(0 <= a < b and (a >= 2**2000 if x > 0 else b <= checker.Fraction(1, 2**2000)), x)
 
     def test_uniform_continuity_is_not_taken_for_granted(self):
         for text, expected in (("sin(t)*cos(t)", True), ("0.2*t + 1", True), ("exp(-abs(sin(t)))", True), ("t*sin(t)", False),
