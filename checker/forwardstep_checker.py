@@ -410,7 +410,7 @@ def quotient(tree):
     if kind in ("number", "t"): return ([tree[1]] if kind == "number" else [Fraction(0), Fraction(1)]), [Fraction(1)]
     if tree[:2] == ("f", "neg"): return quotient(("-", ZERO, tree[2]))
     parts = list(map(quotient, parts_of(tree)))
-    if None in parts or kind not in "+-*/^" or kind == "^" and (tree[2].denominator > 1 or abs(tree[2]) > 8): return None
+    if None in parts or kind not in "+-*/^" or kind == "^" and (tree[2].denominator > 1 or not 0 < abs(tree[2]) <= 8): return None
     first, last = parts[0], parts[-1]
     # Q²/(P Q) for the inverse of P/Q: no pole is lost.
     if kind == "/" or kind == "^" and tree[2] < 0: last = convolved(last[1], last[1]), convolved(*last)
@@ -419,7 +419,7 @@ def quotient(tree):
     if kind in "+-":
         crossed = convolved(first[0], last[1]), convolved(last[0], first[1])
         found[0] = [sum(pair_) for pair_ in itertools.zip_longest(*crossed, fillvalue=Fraction(0))]
-    return (found or ([Fraction(1)],) * 2) if max(map(len, found), default=0) <= 2 * MOST_DEGREE else None
+    return found if max(map(len, found)) <= 2 * MOST_DEGREE else None
 
 def trimmed(p): return trimmed(p[:-1]) if p and p[-1] == 0 else p
 
@@ -558,13 +558,13 @@ def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 @once
 def derivative(tree):
     kind = tree[0]
-    if kind == "t" or not has_variable(tree): return ONE if kind == "t" else ZERO
-    if kind == "points": return *tree[:3], tree[3] + 1
+    if kind == "t" or not has_variable(tree): return ONE if kind == "t" else enclose(tree, WHOLE) and ZERO
+    if kind == "points": return decided(tree[3] < 3, "a curve's third derivative jumps") or (*tree[:3], tree[3] + 1)
     a, *_, b = parts_of(tree) * 2
     da, db = derivative(a), derivative(b)
     if kind in "+-": return plus(da, db if kind == "+" else negated(db))
     if kind == "*": return plus(times(da, b), times(a, db))
-    if kind == "/" and not has_variable(b): return da if da == ZERO else ("/", da, b)
+    if kind == "/" and not has_variable(b): return da if da == ZERO and inverse(enclose(b, WHOLE)) else ("/", da, b)
     if kind == "/": return plus(da if da == ZERO else ("/", da, b), negated(times(a, times(db, ("^", b, Fraction(-2))))))
     if kind == "^":
         # No power below the first is made, whose slope would divide by what may be zero.
@@ -1752,13 +1752,13 @@ def motions_of(claim):
 def bounded(claim, order, stretch):
     stretch.only("range", "cells", "until_s")
     scenario, always, motions = claim.scenario, True, motions_of(claim)
-    require(order, motions and order.count() >= max(most for _, _, most in motions), "is too low for a law")
+    require(order, order.count() >= max(most for _, _, most in motions), "is too low for a law")
     decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
     for tree, lowest, most in ((tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"):
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
                 require(stretch, finite(tree, pieces(stretch, tree, scenario.end_s)), f"does not bound derivative {k}")
-                always = always and lasts(stretch)
+                always = lasts(stretch)
             tree = derivative(tree)
     return always
 
@@ -1771,7 +1771,7 @@ def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and in
 # its S is not always zero, and beside it all others vanish.
 def grows(tree):
     if tree[:2] in (("f", "abs"), ("f", "neg")): return grows(tree[2])
-    split = lambda part, of: functools.reduce(times, (x for x in factors_of(part) if (has_variable(x) and repeats(x)) == of), ONE)
+    split = lambda part, of: functools.reduce(times, (x for x in factors_of(part) if repeats(x) == of), ONE)
     found = [(by, split(part, False), split(part, True)) for by, part in weighed(tree) if by != (0, 0)]
     beside = lambda p, others: all(attempt(limit, ("/", q, p)) == (0, 0) and finite(s, [FOR_EVER]) for _, q, s in others)
     endless = lambda p: infinite((attempt(limit, p) or (0, 0))[0])
@@ -1819,7 +1819,7 @@ def quaternion(own):
 
 # The square of how far a target is from where the reach of a tip is counted.
 def reached(claim, _=FOR_EVER):
-    agent = claim.own[0]
+    agent, = claim.own
     if agent.robot == "planar_arm":
         first, second = planar(agent.body)[1]
         return [(squares(agent.target), ((first - second) ** 2,) * 2, ((first + second) ** 2,) * 2)]
@@ -1920,8 +1920,9 @@ def swarm(claim, pivots):
 # have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
 def factors(scenario, state=None):
     for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
-        psi = {"strict_feedback": "1", "pure_feedback": "x1"}.get(agent.robot, agent.body.get("psi", "1"))
-        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, STATES), states_of(state) if state else WHOLE)
+        # Of a pure-feedback chain the factor is a slope, which no state has here.
+        psi = {"strict_feedback": "1", "pure_feedback": "slope"}.get(agent.robot, agent.body.get("psi", "1"))
+        within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, [*STATES, "slope"]), states_of(state) if state else WHOLE)
         yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
 
 # Or by the determinant: the product of the m − 1 other singular values is at most the power m − 1 of their quadratic mean.
@@ -2004,7 +2005,8 @@ def outcome(scenario, entry, asked, spoken):
     try: return claim.id, claim.agents, claim.answer, *claim.judge(), ""
     except (Rejected, Meaningless, Undecided) as error: return claim.id, claim.agents, claim.answer, *(error.outcome, *error.args, "")[:3]
 
-# The shares u ≥ 0 with uᵀL = 0 and Σu = 1 of a fixed network: what each agent's start counts in the value agreed upon.
+# The shares u with uᵀL = 0 and Σu = 1 of a fixed network: what each agent's start counts in the value agreed upon. A spanning tree
+# leaves one such u, and none of its entries is negative.
 def agreed(scenario, node):
     influence, = node.fields("influence")
     stated = {pair_.each()[0].text(): pair_.each()[1].number() for pair_ in influence.each() if len(pair_.each()) == 2}
@@ -2014,7 +2016,7 @@ def agreed(scenario, node):
     for edge in scenario.graphs[0]:
         flow[edge.to] += shares[edge.to] * edge.weight
         flow[edge.source] -= shares[edge.to] * edge.weight
-    require(influence, min(shares) >= 0 and sum(shares) == 1, "must be shares of one")
+    require(influence, sum(shares) == 1, "must be shares of one")
     require(influence, not any(flow), "is no left null vector of the Laplacian")
 
 # Digests only say which files were meant.

@@ -8,6 +8,7 @@ transitive closures, sampling and determinants, where the checker follows trees,
 """
 
 import copy
+import decimal
 import functools
 import itertools
 import json
@@ -812,6 +813,27 @@ class FalseProofs(unittest.TestCase):
         at_zero = ("roots_per_s = [1.0, 1.0]", "roots_per_s = [0.0, 2.0]")
         self.rejected("swarm-tracking", "swarm-coupling", "is for real roots", lambda entry: None, at_zero)
 
+    def test_roots_of_a_polynomial_of_order_two(self):
+        """p² + β p + α: rounded to the side on which more is asked for."""
+        found = lambda **body: [tuple(float(x) for x in root) for root in checker.roots_of(body)]  # noqa: E731
+        self.assertEqual(found(alpha=3), [(3, 0)])
+        self.assertEqual(found(alpha=2, beta=3), [(1, 0), (2, 0)])
+        self.assertEqual(found(alpha=5, beta=2), [(1, 2), (1, 2)])
+        for alpha, beta in ((1, 3), (2, 5), (7, 2), (1, 1)):
+            (a, b), (c, _) = roots = checker.roots_of({"alpha": alpha, "beta": beta})
+            # Of two real roots the smaller is no larger than it is, of a pair the imaginary part no smaller.
+            self.assertTrue((alpha - beta * a + a * a >= 0 and 2 * a <= beta == a + c) if b == 0 else a * a + b * b >= alpha, roots)
+
+    def test_terms_have_a_value_everywhere_one_and_all(self):
+        for text in ("log(x)", "1/x", "sqrt(x - 1)"):
+            judged, found = self.judged("desired-target", "defined-terms", lambda entry: None, ('"2 + cos(x)"', f'"{text}"'))
+            self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
+
+    def test_a_target_has_as_many_bounded_derivatives_as_those_who_follow_it_have_roots(self):
+        for law, roots, least in (("adaptive", [1], 2), ("adaptive", [1, 2], 2), ("adaptive", [1, 2, 3], 3), ("linearising", [1], 1), ("linearising", [1, 2, 3], 3)):
+            agent = type("Agent", (), {"law": law, "roots": roots, "gains": {}})
+            self.assertEqual(checker.needed(agent, None), least, (law, roots))
+
     def test_joints_need_inertia(self):
         robot = (HERE.parent / "crates" / "io" / "robots" / "ur5e.urdf").read_text()
         scenario = checker.Scenario(place_of("six-arms").read_text(), SCENARIOS)
@@ -868,12 +890,31 @@ class FalseProofs(unittest.TestCase):
         self.accepted("theorem-8", "sign-gain", instant("7.0"), small)
         self.rejected("theorem-8", "sign-gain", "is no time", instant("0"), small)
         self.rejected("theorem-8", "sign-gain", "before the start", instant("-1"), small)
+        for axis in (0, 3):
+            of_none = lambda entry: entry.update(answer="violated", proof={"kind": "instant", "t_s": "7", "axis": axis})  # noqa: E731, B023
+            self.rejected("theorem-8", "sign-gain", "is of no axis", of_none, small)
         self.rejected("theorem-8", "sign-gain", "is no time", instant("47"), small)
         self.rejected("theorem-8", "bounded-leader", "too low", lambda entry: entry["proof"].update(order=2))
         self.rejected("formation", "bounded-target", "does not bound", lambda entry: None, ("0.2*t + cos(0.3*t)", "0.2*t^2 + cos(0.3*t)"))
         zero = ("target.formulas = [0, 0, 0, 1] ", "target.formulas = [0, 0, 0, \"sin(t)\"] ")
         away = lambda entry: entry["proof"]["bound"].update(within=["-1", "1"])  # noqa: E731
         self.rejected("theorem-7", "nonzero-quaternion", "holds zero", away, zero)
+        norm = lambda entry: entry.update(proof={"kind": "norm", "bound": {"range": "for-ever", "within": ["0", "1"]}})  # noqa: E731
+        self.rejected("theorem-7", "nonzero-quaternion", "leaves (0, inf)", norm, zero)
+        centre = ('["0.8 + 0.3*cos(t)", "0.6 + 0.3*sin(t)"]', '["0.1 + 0*t", "0"]')
+        inner = lambda entry: entry["proof"]["bound"].update(within=["0.01", "0.01"])  # noqa: E731
+        self.rejected("theorem-6", "target-within-reach", "leaves (1/25, 81/25)", inner, centre)
+        self.rejected("theorem-8", "sign-gain", "leaves", lambda entry: entry["proof"]["bounds"][0].update(within=["-2", "1"]))
+        by_entry = lambda number, *within: lambda entry: entry.update(  # noqa: E731
+            proof={"kind": "entry-away", "entry": number, "bound": {"range": "for-ever", "within": list(within)}})
+        self.accepted("theorem-7", "nonzero-quaternion", by_entry(1, "-3", "-2"), ("[0, 0, 0, 1] ", "[-2, 0, 0, 0] "))
+        touches = ("[0, 0, 0, 1] ", '[0, 0, 0, "1 - cos(t)"] ')
+        for within in (("0", "2"), ("-2", "0")):
+            self.rejected("theorem-7", "nonzero-quaternion", "holds zero", by_entry(4, *within), (
+                touches if within[0] == "0" else (touches[0], touches[1].replace("1 - cos(t)", "cos(t) - 1"))))
+        for number in (0, 5):
+            entry_ = {"kind": "entry-away", "entry": number, "bound": {"range": "for-ever", "within": ["1", "1"]}}
+            self.rejected("theorem-7", "nonzero-quaternion", "is no entry", lambda entry: entry.update(proof=entry_))  # noqa: B023
         self.rejected("theorem-7", "nonzero-quaternion", "does not hold", lambda entry: None, zero)
         self.rejected("theorem-7", "known-momentum", "by the text", lambda entry: None, (
             "[goal]", '[[external_wrenches]]\non = ["craft"]\nby.body_torque_n_m = [1, 0, 0]\n[goal]'))
@@ -921,6 +962,13 @@ class FalseProofs(unittest.TestCase):
                 (Path(folder) / "ur5e.urdf").write_text(robot.replace(old, new, 1))
                 found = checker.check(certificate, place_of(name).read_text(), Path(folder), digests=False)
                 self.assertEqual([one[3] for one in found if one[0] == each], [outcome], found)
+
+    def test_the_edge_of_what_a_planar_arm_reaches_is_out_of_reach(self):
+        out = lambda entry: entry.update(answer="violated", proof={"kind": "out-of-reach", "t_s": "0"})  # noqa: E731
+        old = '["0.8 + 0.3*cos(t)", "0.6 + 0.3*sin(t)"]'
+        for edge in ("0.2", "1.8"): self.accepted("theorem-6", "target-within-reach", out, (old, f'["{edge}", "0"]'))
+        for inside in ("0.2000001", "1.7999999"):
+            self.rejected("theorem-6", "target-within-reach", "is no time", out, (old, f'["{inside}", "0"]'))
 
     def test_lengths_of_a_tree_are_those_of_its_geometry(self):
         scenario = checker.Scenario(place_of("task-space-ur5e").read_text(), SCENARIOS)
@@ -982,12 +1030,48 @@ class FalseProofs(unittest.TestCase):
             self.rejected("saturated-coupling", "input-factor", "is not so", lambda entry: None, change)
         self.accepted("saturated-coupling", "input-factor", factor, small)
         self.rejected("saturated-coupling", "input-factor", "no factor below", factor)
+        # The floor itself is not below it.
+        self.rejected("saturated-coupling", "input-factor", "no factor below", factor, (small[0], small[1].replace("1e-4", "1e-3")))
         # In a state: ψ = 2 + x is 10⁻⁴ at −1.9999.
         there = lambda *state: lambda entry: entry.update(  # noqa: E731
             answer="violated", proof={"kind": "factor", "agent": "cart-1", "state": list(state)})
         self.accepted("saturated-coupling", "input-factor", there("-1.9999", "0"), state)
         self.rejected("saturated-coupling", "input-factor", "no factor below", there("-1.99", "0"), state)
         self.rejected("saturated-coupling", "input-factor", "no factor below", there(), state)
+        # Of a pure-feedback chain the factor is a slope, which is nowhere zero here, not where x1 is either.
+        zero = lambda entry: entry.update(answer="violated", proof={"kind": "factor", "agent": "chain-1", "state": ["0", "0"]})  # noqa: E731
+        self.rejected("pure-feedback", "input-factor", "no factor below", zero)
+
+    def test_equations_that_no_next_state_moves(self):
+        unmoved = lambda agent, equation: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "unmoved", "agent": agent, "equation": equation})
+        still = ('known = ["x2 + 0.2*x2^3", "0"], regressors = [["x1^2 + 0.3*tanh(x2)"', 'known = ["x1", "0"], regressors = [["x1^2"')
+        self.accepted("pure-feedback", "input-factor", unmoved("chain-1", 1), still)
+        self.rejected("pure-feedback", "input-factor", "is moved by x2", unmoved("chain-1", 1))
+        # By a parameter alone, or by what is known alone.
+        for old, new in (("x2 + 0.2*x2^3", "x1"), ("x1^2 + 0.3*tanh(x2)", "x1^2")):
+            self.rejected("pure-feedback", "input-factor", "is moved by x2", unmoved("chain-1", 1), (old, new))
+        # An input moves the last one, and there is none before the first.
+        for equation in (2, 0):
+            self.rejected("pure-feedback", "input-factor", "none that a next state moves", unmoved("chain-1", equation))
+        # Of a strict-feedback chain the next state stands beside the terms of an equation.
+        self.rejected("strict-feedback", "input-factor", "is no pure-feedback chain", unmoved("second", 1))
+        self.rejected("pure-feedback", "input-factor", "is no chain", unmoved("nobody", 1), still)
+
+    def test_vectors_that_a_matrix_takes_to_zero(self):
+        null = lambda agent, *vector: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "null-vector", "agent": agent, "vector": list(vector)})
+        flat = ('psi = [["2", "0.5"], ["-0.3", "1 + x1^2"]]', 'psi = [["0.1", "0.3"], ["0.3", "0.9"]]')
+        self.accepted("vector-plants", "input-factor", null("tanks", "3", "-1"), flat)
+        for vector in (("0", "0"), ("1", "0"), ("3", "-1.0000000001")):
+            self.rejected("vector-plants", "input-factor", "is not taken to zero", null("tanks", *vector), flat)
+        self.rejected("vector-plants", "input-factor", "cannot be checked", null("tanks", "3", "-1", "0"), flat)
+        # Of more columns than rows there is always such a vector.
+        wide = (flat[0], 'psi = [["0.1", "0.3", "0"], ["0.3", "0.7", "0"]]')
+        self.rejected("vector-plants", "input-factor", "has no matrix", null("tanks", "0", "0", "1"), wide)
+        self.rejected("strict-feedback", "input-factor", "has no matrix", null("second", "1"))
+        _, found = self.judged("vector-plants", "input-factor", null("tanks", "3", "-1"))
+        self.assertNotIn(checker.ACCEPTED, [one[3] for one in found if one[0] == "input-factor"], found)
 
     def test_matrices_of_inputs_are_bounded_from_below(self):
         """Of two rows |A|² = σ₁² + σ₂² and |det A| = σ₁ σ₂ give the smaller of the singular values."""
@@ -1010,6 +1094,10 @@ class FalseProofs(unittest.TestCase):
         self.assertAlmostEqual(float(checker.regular([["0", "2", "0"], ["0", "0", "2"], ["2", "0", "0"]])[0]), 8 * 2 / 12, 9)
         for rows in ([["1", "0"], ["0"]], [["1"], ["1"]]):
             self.assertRaises(checker.Meaningless, checker.regular, rows)
+        self.assertEqual(checker.regular([["0", "0"], ["0", "0"]])[0], 0)
+        # The determinant of seven rows takes too long.
+        seven = [["2" if j == (i + 1) % 7 else "0" for j in range(7)] for i in range(7)]
+        self.assertLess(checker.regular(seven)[0], 0)
 
     def test_inertias(self):
         arm = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }"
@@ -1021,6 +1109,7 @@ class FalseProofs(unittest.TestCase):
         even = "sway_kg = 4, sway_yaw_kg_m = %s, yaw_kg_m2 = 9"
         self.accepted("five-ships", "uniform-inertia", lambda entry: None, (ship, even % "-5.999"))
         self.rejected("five-ships", "uniform-inertia", "is not so", lambda entry: None, (ship, even % "-6"))
+        self.rejected("bounds", "uniform-inertia", "is not so", lambda entry: None, ("mass_kg = 2,", "mass_kg = 0,"))
         self.accepted("five-ships", "bounded-dynamics")
 
     def test_signs_are_solved_for_often_enough(self):
@@ -1046,6 +1135,8 @@ class FalseProofs(unittest.TestCase):
         self.rejected("theorem-2", "applied-torque", "by the text", lambda entry: None, limits)
         self.rejected("swarm-tracking", "mutual-weights", "by the text", lambda entry: None, ('["arm-2", "arm-1"], ', ""))
         self.rejected("theorem-9", "no-delay", "by the text", lambda entry: None, ("[network]", "[network]\ndelay.constant_s = 0.1"))
+        one = ('["leader", "arm-1"]', '{ from = "leader", to = "arm-1", delay.constant_s = 0.1 }')
+        self.rejected("theorem-9", "no-delay", "by the text", lambda entry: None, one)
         self.rejected("theorem-8", "set-valued-sign", "by the text", lambda entry: None, ("gain = 2 ", 'gain = 2\nsign = "explicit" #'))
         self.rejected("theorem-1", "fixed-graph", "by the text", lambda entry: None, ("[network]", '[network]\nweight = "2 + sin(t)"'))
         more = ("edges = [[", "[[network.phases]]\ndwell_s = 1\nedges = []\n[[network.phases]]\ndwell_s = 1\nedges = [[")
@@ -1074,6 +1165,54 @@ class FalseProofs(unittest.TestCase):
         baseless = {"id": "continuous-time", "agents": [], "answer": "holds"}
         sampled_ = text.replace("[network]", "[control]\nsample_hz = 100\n[network]")
         self.assertIn("is a claim that nothing before a run shows", said(lambda c: c["hypotheses"].append(baseless), sampled_))
+
+    def test_digests_of_files_beside_the_scenario_count(self):
+        text, folder = place_of("logs").read_text(), place_of("logs").parent
+
+        def said(change, digests=True):
+            certificate = json.loads((self.folder / "logs.json").read_text())
+            change(certificate["scenario"])
+            return [one[4] for one in checker.check(json.dumps(certificate), text, folder, digests) if one[3] == checker.REJECTED]
+
+        self.assertEqual(said(lambda scenario: None), [])
+        for k in (0, 1):
+            other = lambda scenario: scenario["inputs"][k].update(sha256="0" * 64)  # noqa: E731, B023
+            self.assertEqual(said(other), ["is not that of the file"])
+            self.assertEqual(said(other, False), [])
+        self.assertEqual(said(lambda scenario: scenario.update(sha256="0" * 64)), ["is not that of the scenario"])
+        # A mesh, which is not read here.
+        self.assertEqual(said(lambda scenario: scenario["inputs"].append({"file": "arm.stl", "sha256": "0" * 64})), [])
+
+    def test_every_measurement_that_is_inexact_is_asked_for(self):
+        for entry in ("noise.position = 1e-4", "noise.velocity = 1e-4", "quantisation.velocity = 1e-3", 'velocity.filtered.cutoff_hz = 20'):
+            scenario = checker.Scenario(place_of("theorem-2").read_text().replace(
+                "[network]", f"[control]\nsample_hz = 100\n{entry}\n[network]"), SCENARIOS)
+            self.assertIn(("exact-measurements", ""), checker.requirements(scenario), entry)
+        exact = checker.Scenario(place_of("theorem-2").read_text().replace("[network]", "[control]\nsample_hz = 100\n[network]"), SCENARIOS)
+        self.assertNotIn(("exact-measurements", ""), checker.requirements(exact))
+
+    def test_one_vehicle_with_a_bias_or_another_design_is_enough(self):
+        agent = lambda bias=(0, 0, 0), design="continuous": type("Agent", (), {  # noqa: E731
+            "law": "thrust", "gains": {"design": {design: {}}}, "settings": lambda _: {"bias_m_s2": list(bias)}})()
+        scenario = lambda *agents: type("Scenario", (), {"agents": agents})  # noqa: E731
+        of = lambda each, *agents: checker.TEXT[each, "text"](scenario(*agents), [])  # noqa: E731
+        self.assertTrue(of("unbiased-acceleration", agent(), agent()))
+        self.assertFalse(of("unbiased-acceleration", agent(), agent((0, 0.1, 0))))
+        self.assertTrue(of("known-masses", agent(), agent()))
+        self.assertFalse(of("known-masses", agent(), agent(design="adaptive")))
+
+    def test_stretches_on_which_derivatives_are_bounded(self):
+        """A divisor that is no less than 0.4, as pieces show, and [1, ∞) at once does not."""
+        name, each, narrow = "desired-target", "bounded-target", ('"sin(t)"', '"1/(1.6 - sin(t) - cos(2*t))"')
+        short = ("end_s = 20", "end_s = 2")
+
+        def on(answer="holds", **stretch):
+            return lambda entry: entry.update(answer=answer, proof={"kind": "derivatives", "order": 3, "stretch": stretch})
+        self.accepted(name, each, on(range="period", cells=30), narrow)
+        self.rejected(name, each, "does not bound derivative 0", on(range="for-ever"), narrow)
+        self.rejected(name, each, "does not bound derivative 0", on(range="period", cells=2), narrow)
+        self.rejected(name, each, "more than the proof shows", on(range="run", cells=10), narrow, short)
+        self.accepted(name, each, on("holds on [0, end]", range="run", cells=10), narrow, short)
 
     def test_what_may_mean_something_unknown_is_not_accepted(self):
         """A key, or a kind, that came after the checker."""
@@ -1234,6 +1373,9 @@ class FalseProofs(unittest.TestCase):
         self.rejected("theorem-6", each, "not taken to zero", taken(*along), bent("1e-4"))
         self.rejected("theorem-6", each, "not taken to zero", taken(*along))
         self.rejected("theorem-6", each, "not taken to zero", taken("1", "0"), bent("0"))
+        # How long the vector is does not matter.
+        self.rejected("theorem-6", each, "not taken to zero", taken("1e-9", "0"), bent("0"))
+        self.accepted("theorem-6", each, taken("980066577.84", "198669330.80"), bent("0"))
         self.rejected("theorem-6", each, "is zero", taken("0", "0"), bent("0"))
         self.rejected("theorem-6", each, "another length", taken(*along, "0"), bent("0"))
         # No length is known: nothing moves the tip that the law knows.
@@ -1301,6 +1443,8 @@ class FalseProofs(unittest.TestCase):
         self.accepted(name, each, vanishes("90"), over)
         for other in ("89.999999999999999", "0", "-90"): self.rejected(name, each, words, vanishes(other), over)
         self.rejected(name, each, words, vanishes("-90"), target(0, 0, 0, "1 + t/90"))
+        self.accepted(name, each, vanishes("0"), target(0, 0, 0, "t"))
+        self.accepted(name, each, turns(4, "0", "2"), target(0, 0, 0, "cos(t)"))
         # Several entries pass zero together, or nearly.
         self.accepted(name, each, vanishes("90"), target("t/30 - 3", 0, "2 - t/45", "1 - t/90"))
         self.rejected(name, each, words, vanishes("90"), target("t/30 - 3", 0, "1e-30", "1 - t/90"))
@@ -1313,6 +1457,7 @@ class FalseProofs(unittest.TestCase):
         self.rejected(name, each, "not the only one", turns(3, "1.57", "1.58"), target(0, 0, "cos(t)", "1e-12"))
         self.rejected(name, each, "one sign", turns(4, "91", "92"), over)
         self.rejected(name, each, "one sign", turns(4, "80", "90"), over)
+        self.rejected(name, each, "one sign", turns(4, "80", "89"), over)
         self.rejected(name, each, "ends no stretch", turns(4, "91", "89"), over)
         self.rejected(name, each, "ends no stretch", turns(4, "-1", "91"), over)
         self.rejected(name, each, "is no entry", turns(5, "89", "91"), over)
@@ -1364,6 +1509,70 @@ class FalseProofs(unittest.TestCase):
             self.rejected(name, each, "stays bounded", diverges(2), (old, target))
         judged, found = self.judged(name, each, diverges(2), (old, "t*sin(t) - t*sin(t)"))
         self.assertEqual([outcome for outcome, _ in judged], [checker.UNCHECKED], found)
+
+    def test_what_is_said_to_diverge_does(self):
+        name, each, old = "desired-target", "bounded-target", '"sin(t)"'
+
+        def diverges(motion=1, axis=1, order=0):
+            return lambda entry: entry.update(answer="violated", proof={"kind": "diverges", "motion": motion, "axis": axis, "order": order})
+        for target in ("t*(2 + sin(t))", "t^4 - t*sin(t)", "-t", "exp(t) - 1", "t + sin(t*sin(t))", "t*min(sin(t), 0 - 1)"):
+            self.accepted(name, each, diverges(), (old, f'"{target}"'))
+        # Each of these has a limit, or is zero. In the first the angle stands still, near a multiple of 2 π, wherever cos t > 0.1.
+        stands = "(2*pi + t - atan(sin(t)/max(abs(cos(t)), 0.1)))"
+        for target in (f"t*max(0, cos(t) - 0.1)*sin({stands}*(1 - exp(-t)))",
+                       "t*sin(exp(-t))", "(pi - pi)*t*sin(t)", "t*abs(sin(2*t) - 2*sin(t)*cos(t))", "t*sin(t)*0"):
+            judged, found = self.judged(name, each, diverges(), (old, f'"{target}"'))
+            self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], (target, found))
+        self.assertTrue(checker.swings(checker.formula("1/(1 - cos(t))")), "without a value at first")
+        grows = (old, '"t^3"')
+        self.accepted(name, each, diverges(order=3), (old, '"t^4"'))
+        for motion, axis, words in ((0, 1, "is no motion"), (2, 1, "is no motion"), (1, 0, "is no axis"), (1, 2, "is no axis")):
+            self.rejected(name, each, words, diverges(motion, axis), grows)
+        points = "target.points = { times_s = [1, 2], positions = [[0], [1]] }"
+        self.rejected(name, each, "is no axis with a formula", diverges(), ('target.formulas = ["sin(t)"]', points))
+        # A derivative that no law reads: that of order four grows, those before it do not.
+        fast = (old, '"sin(t^2)/(1 + t^2)^1.5"')
+        self.rejected(name, each, "no derivative that a law uses", diverges(order=4), fast)
+        self.rejected(name, each, "no derivative that a law uses", diverges(order=-1), grows)
+        # Where those are that hear how fast a leader moves, or that agree, does not matter.
+        self.rejected("formation", each, "no derivative that a law uses", diverges(), ("0.2*t + cos(0.3*t)", "0.3*t"))
+        away = ("motion.sinusoids = [", 'motion.formulas = ["t", "0"]\n#'), ("    { offset = 0.3,", "#"), ("    { offset = -0.2,", "#"), ("\n]", "\n#")
+        self.rejected("theorem-8", "bounded-leader", "no derivative that a law uses", diverges(), *away)
+
+    def test_a_leader_that_is_an_agent_has_no_motion_of_which_something_is_known(self):
+        holds = lambda **proof: lambda entry: entry.update(answer="holds", proof=proof)  # noqa: E731
+        self.rejected("pilot-ship", "bounded-leader", "is of no motion", holds(kind="derivatives", order=3, stretch={"range": "for-ever"}))
+        self.rejected("pilot-ship", "sign-gain", "is of no motion", holds(kind="bounds", bounds=[]))
+
+    def test_one_of_several_agents_does_not_stand_for_the_others(self):
+        """A claim that names two, with what is true of one of them."""
+        near, far = place_of("theorem-6").read_text(), "formulas = [9, 9]"
+        first, last = near.index("[[agents]]"), near.index("[reference.tracking]")
+        other = near[first:last].replace('name = "arm"', 'name = "other"')
+        both = other[:other.index("formulas")] + far + "\n"
+        two = lambda entry: entry.update(agents=["arm", "other"])  # noqa: E731
+        whole = ("[reference.tracking]", both + "\n[reference.tracking]")
+        judged, found = self.judged("theorem-6", "target-within-reach", two, whole)
+        self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], found)
+        judged, found = self.judged("theorem-6", "target-within-reach", lambda entry: None, whole)
+        self.assertIn((checker.ACCEPTED, "distance"), judged, found)
+        text = place_of("theorem-7").read_text()
+        craft = text[text.index("[[agents]]"):text.index("[reference.tracking]")]
+        still = craft.replace('"craft"', '"other"').replace("[0, 0, 0, 1] ", "[0, 0, 0, 0] ")
+        pair = lambda entry: entry.update(agents=["other", "craft"])  # noqa: E731
+        judged, found = self.judged("theorem-7", "nonzero-quaternion", pair, ("[reference.tracking]", still + "[reference.tracking]"))
+        self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], found)
+
+    def test_swarms_whose_laplacian_changes(self):
+        """One graph is definite, the other is not."""
+        text = place_of("swarm-tracking").read_text()
+        edges = text[text.index("edges = ["):text.index("[goal]")]
+        phases = f"[[network.phases]]\ndwell_s = 1\n{edges}\n[[network.phases]]\ndwell_s = 1\nedges = []\n\n"
+        self.rejected("swarm-tracking", "swarm-coupling", "the Laplacian changes", lambda entry: None, (edges, phases))
+        weight = ('["leader", "arm-1"]', '{ from = "leader", to = "arm-1", weight = "1.5 - cos(t)/3" }')
+        self.rejected("swarm-tracking", "swarm-coupling", "the Laplacian changes", lambda entry: None, weight)
+        rounded = ("roots_per_s = [1.0, 1.0]", "alpha = 1\nbeta = 2")
+        self.rejected("swarm-tracking", "swarm-coupling", "is for real roots that are stated", lambda entry: None, rounded)
 
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"
@@ -1426,6 +1635,10 @@ class FalseProofs(unittest.TestCase):
         self.assertEqual(said("1/2", "1/2", "1/2", "1/2"), ["must be shares of one"])
         self.assertEqual(said("1/2", "1/4", "1/8", "1/8"), ["is no left null vector of the Laplacian"])
         self.assertEqual(said("1/4", "1/4", "1/2"), ["must be [agent, share] of everybody"])
+        twice = json.loads((self.folder / "first-order.json").read_text())
+        twice["agreement"]["influence"].insert(0, ["arm-1", "1/2"])
+        found = checker.check(json.dumps(twice), place_of("first-order").read_text(), SCENARIOS, digests=False)
+        self.assertEqual([one[4] for one in found if one[3] == checker.REJECTED], ["must be [agent, share] of everybody"])
         # A tree that is claimed for the run alone is the same tree, since the graph never changes.
         weaker = json.loads((self.folder / "first-order.json").read_text())
         weaker["hypotheses"][0]["answer"] = "holds on [0, end]"
@@ -1441,6 +1654,10 @@ class FalseProofs(unittest.TestCase):
         alone = min(set(range(6)) - {edge.to for edge in graph})
         certificate["agreement"] = {"influence": [[f"arm-{k + 1}", str(int(k == alone))] for k in range(6)]}
         found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+        self.assertIn("is of no fixed network", [one[4] for one in found])
+        varying = ("[network]", '[network]\nweight = "2 + sin(t)"')
+        text = place_of("first-order").read_text().replace(*varying)
+        found = checker.check((self.folder / "first-order.json").read_text(), text, SCENARIOS, digests=False)
         self.assertIn("is of no fixed network", [one[4] for one in found])
         # Of two closed classes each has a null vector, and no value is agreed upon.
         text = place_of("cut").read_text()
@@ -1516,6 +1733,54 @@ class Enclosures(unittest.TestCase):
                 self.assertLess(found[1] - found[0], 1e-25 * max(1, abs(value)))
                 self.assertAlmostEqual(float(found[0]) / max(1, abs(value)), value / max(1, abs(value)), 12)
 
+    def test_functions_are_enclosed_to_sixty_digits(self):
+        """Held against `decimal`, and series in it."""
+        draw, exact = random.Random(9), decimal.Context(prec=160)
+
+        def series(term, step):
+            total, k = decimal.Decimal(0), 1
+            while abs(term) > decimal.Decimal("1e-150"):
+                total, term, k = exact.add(total, term), exact.multiply(term, step(k)), k + 1
+            return total
+
+        def atan(x):
+            if abs(x) > decimal.Decimal("0.1"):
+                return 2 * atan(exact.divide(x, exact.add(1, exact.sqrt(exact.fma(x, x, 1)))))
+            square, total, term, k = exact.multiply(x, x), decimal.Decimal(0), x, 1
+            while abs(term) > decimal.Decimal("1e-150"):
+                total, term, k = exact.add(total, exact.divide(term, k)), exact.minus(exact.multiply(term, square)), k + 2
+            return total
+
+        def value(name, x):
+            square = exact.minus(exact.multiply(x, x))
+            match name:
+                case "sin": return series(x, lambda k: exact.divide(square, 2 * k * (2 * k + 1)))
+                case "cos": return series(decimal.Decimal(1), lambda k: exact.divide(square, 2 * k * (2 * k - 1)))
+                case "exp": return exact.exp(x)
+                case "log": return exact.ln(x)
+                case "sqrt": return exact.sqrt(x)
+                case "tanh": return 1 - exact.divide(2, exact.add(1, exact.exp(2 * x)))
+                case "atan": return atan(x)
+
+        with decimal.localcontext(exact):
+            ranges = {"sin": (-30, 30), "cos": (-30, 30), "exp": (-90, 90), "log": (1e-6, 1e6), "sqrt": (0, 1e6), "tanh": (-9, 9), "atan": (-50, 50)}
+            for name, (low, high) in ranges.items():
+                for _ in range(60):
+                    x = checker.Fraction(draw.choice((draw.uniform(low, high), draw.uniform(0.4, 2.1), round(draw.uniform(1, 9)))))
+                    a, b = (decimal.Decimal(end.numerator) / end.denominator for end in checker.function(name, (x, x)))
+                    true = value(name, decimal.Decimal(x.numerator) / x.denominator)
+                    room = max(abs(true), 1) * decimal.Decimal("1e-120")
+                    self.assertTrue(a - room <= true <= b + room, (name, x))
+                    self.assertLess(b - a, max(abs(true), 1) * decimal.Decimal("1e-40"), (name, x))
+        # Just below a square, and squares.
+        for x in (1 - checker.Fraction(1, 2**2000), checker.Fraction(1, 4), checker.Fraction(2), checker.Fraction(10**50 + 1)):
+            a, b = checker.sqrt_at(x)
+            self.assertTrue(a * a <= x <= b * b and b - a <= 2**-300 * max(1, b), x)
+        # What has no double is still on the stated side.
+        for x in (-2000, -1501, 1501, 2000):
+            a, b = checker.exp_at(checker.Fraction(x))
+            self.assertTrue(0 <= a < b and (a >= 2**2000 if x > 0 else b <= checker.Fraction(1, 2**2000)), x)
+
     def test_uniform_continuity_is_not_taken_for_granted(self):
         for text, expected in (("sin(t)*cos(t)", True), ("0.2*t + 1", True), ("exp(-abs(sin(t)))", True), ("t*sin(t)", False),
                                ("sin(t^2)", False), ("exp(t)", False), ("t^3", False), ("t/(1 + t)", True), ("max(1, min(t, 3))", True),
@@ -1581,7 +1846,7 @@ class Enclosures(unittest.TestCase):
         self.assertGreater(bounded, 60)
 
     def test_quotients_keep_their_poles(self):
-        for text in ("1/(1/(t - 20))", "(1/(t - 20))^-1", "0*(1/(t - 20)) + 1"):
+        for text in ("1/(1/(t - 20))", "(1/(t - 20))^-1", "0*(1/(t - 20)) + 1", "(1/(t - 20))^0", "2 + (1/(t - 20))^0"):
             self.assertRaises(checker.Undecided, checker.enclose, checker.formula(text), (checker.Fraction(16), checker.INF))
         late = checker.enclose(checker.formula("t/(1 + t)"), (checker.Fraction(16), checker.INF))
         self.assertEqual(late, (checker.Fraction(16, 17), 1))
@@ -1590,6 +1855,9 @@ class Enclosures(unittest.TestCase):
         for text in ("0*log(t - 5)", "0/(t - 5)", "0*(t - 5)^-1", "0*sqrt(t - 5)"):
             slope = checker.derivative(checker.formula(text))
             self.assertRaises(checker.Undecided, checker.enclose, slope, (checker.Fraction(0), checker.Fraction(10)))
+        # Nor has a sum with a number that is none a slope.
+        for text in ("t + 1/0", "t + log(0 - 1)", "0*t/0 + t", "t*(1/0)^0"):
+            self.assertRaises(checker.Undecided, checker.derivative, checker.formula(text))
 
     def test_curves_are_those_that_are_defined(self):
         """Through the points, at rest at both ends, four derivatives that agree inside; what they keep within holds samples."""
@@ -1614,6 +1882,25 @@ class Enclosures(unittest.TestCase):
                         sampled_ = [at(rate(piece, order), 0 if start == -checker.INF else x - start) for start, _, piece in pieces]
                         self.assertTrue(all(found[0] <= value <= found[1] for value in sampled_), (times, values, order, low, high))
         self.assertRaises(checker.Undecided, checker.curve, tuple(range(400)), (checker.Fraction(1),) * 400)
+
+    def test_periods_are_those_of_all_waves(self):
+        for text, unit, length in (("sin(2*t)", math.pi, 1), ("sin(2*t) + cos(3*t/2)", math.pi, 4), ("sin(pi*t) + 1", 1, 2), ("cos(2*pi*t/3)*sin(pi*t/4)", 1, 24),
+                                   ("abs(sin(-t))", math.pi, 2), ("sin(cos(pi*t))", 1, 2)):
+            found, times = checker.period(checker.formula(text))
+            self.assertAlmostEqual(float(found[0]), unit, 15)
+            self.assertAlmostEqual(float(found[1]), unit, 15)
+            self.assertEqual(times, length, text)
+        for text in ("sin(t) + sin(pi*t)", "sin(t^2)", "t*sin(t)", "sin(0*t)", "2", "sin(pi*pi*t)", "sin(t/pi)"):
+            self.assertRaises(checker.Undecided, checker.period, checker.formula(text))
+
+    def test_no_slope_leads_over_a_jump(self):
+        """At rest until 1 s, the third derivative of this curve jumps to 7.5 and falls from there by 22.5 in a second."""
+        jump = "points", (checker.Fraction(1), checker.Fraction(3)), (checker.Fraction(0), checker.Fraction(1)), 3
+        before = checker.Fraction(17, 20), checker.Fraction(23, 20) - checker.Fraction(1, 1000)
+        self.assertEqual(checker.enclose(jump, before)[1], checker.Fraction(15, 2))
+        for piece in (before, (checker.Fraction(17, 20), checker.Fraction(12, 10)), (checker.Fraction(2), checker.Fraction(5, 2))):
+            self.assertRaises(checker.Undecided, checker.straight, jump, piece)
+        self.assertEqual(checker.straight((*jump[:3], 2), (checker.Fraction(0), checker.Fraction(1, 2))), (0, 0))
 
     def test_intervals_hold_all_that_is_sampled(self):
         draw = random.Random(4)
