@@ -549,10 +549,14 @@ def everywhere(tree):
     # Above one the slope of a power is bounded at zero.
     low = enclose(tree[1] if broken else tree[2], WHOLE)[0] if partly else INF
     decided(low > 0 or low == 0 and broken and tree[2] > 1, "a root or a logarithm may be of what is not positive")
-    if tree[0] in ("/", "^"): enclose(tree, WHOLE)
-    return all(map(everywhere, parts_of(tree)))
+    return (tree[0] not in ("/", "^") or enclose(tree, WHOLE) is not None) and all(map(everywhere, parts_of(tree)))
 
 def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
+
+# x and c of √(c + x²), whose slope x' sin(atan(x/√c)) stays bounded beside all that its own derivatives are made of, whatever x does.
+def root(tree):
+    match tree:
+        case "f", "sqrt", ("+", ("number", c), ("^", x, 2)) | ("+", ("^", x, 2), ("number", c)): return x, c
 
 # By t, where there are no kinks. A quotient is a product with a power: its divisor is not squared again with every derivative.
 @once
@@ -562,13 +566,13 @@ def derivative(tree):
     if kind == "points": return decided(tree[3] < 3, "a curve's third derivative jumps") or (*tree[:3], tree[3] + 1)
     a, *_, b = parts_of(tree) * 2
     da, db = derivative(a), derivative(b)
-    if kind in "+-": return plus(da, db if kind == "+" else negated(db))
-    if kind == "*": return plus(times(da, b), times(a, db))
+    if kind in "+-*": return plus(*(times(da, b), times(a, db)) if kind == "*" else (da, db if kind == "+" else negated(db)))
     if kind == "/" and not has_variable(b): return da if da == ZERO and inverse(enclose(b, WHOLE)) else ("/", da, b)
     if kind == "/": return plus(da if da == ZERO else ("/", da, b), negated(times(a, times(db, ("^", b, Fraction(-2))))))
-    if kind == "^":
-        # No power below the first is made, whose slope would divide by what may be zero.
-        return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
+    # No power below the first is made, whose slope would divide by what may be zero.
+    if kind == "^": return times(da, ONE if tree[2] == 1 else times(("number", tree[2]), a if tree[2] == 2 else ("^", a, tree[2] - 1)))
+    if (found := root(tree)) and found[1] > 0:
+        return times(derivative(found[0]), ("f", "sin", ("f", "atan", ("/", found[0], ("f", "sqrt", ("number", found[1]))))))
     outer = {"neg": ("number", Fraction(-1)), "sin": ("f", "cos", a), "cos": ("f", "neg", ("f", "sin", a)), "exp": tree,
              "log": ("/", ONE, a), "sqrt": ("/", ("number", Fraction(1, 2)), tree), "tanh": ("-", ONE, ("^", tree, Fraction(2))),
              "atan": ("/", ONE, ("+", ONE, ("^", a, Fraction(2)))) if quotient(a) else ("^", ("f", "cos", tree), Fraction(2))}
@@ -588,8 +592,7 @@ def settles(tree):
 # uniformly continuous in x: its slope is bounded but near a root, where it is the root of what has a bounded one.
 @once
 def steady(tree, t):
-    match tree:
-        case "f", "sqrt", ("+", ("number", _), ("^", x, 2)) | ("+", ("^", x, 2), ("number", _)) if steady(x, t): return True
+    if (found := root(tree)) and steady(found[0], t): return True
     if not has_variable(tree) or tree[0] == "t" or settles(tree) and not infinite(limit(tree)[0]): return True
     plain = tree[0] in ("+", "-", "min", "max") or tree[0] == "f" and tree[1] not in ("exp", "log")
     compact = all(finite(part, [t]) for part in parts_of(tree)) and attempt(in_one_pass, tree, t) is not None
@@ -833,8 +836,7 @@ class Scenario:
             such(all(phase in range(1, len(phases) + 1) for phase, *_ in self.logged), "a log has a phase that is none")
             # The last may be cut short by the end of the table.
             self.dwell = [end - start for _, start, end in self.logged[:-1] or self.logged]
-        else:
-            self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
+        else: self.dwell = [positive(phase.get("dwell_s"), "dwell_s") for phase in (phases if self.switching == "repeat" else phases[:-1])]
 
     # (entry, from when, until when) of the rows of a log; the last of them is the end.
     def log(self, rows, key):

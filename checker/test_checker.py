@@ -1794,7 +1794,8 @@ class Enclosures(unittest.TestCase):
             for start in (checker.LATE, checker.FOR_EVER): self.assertEqual(checker.steady(tree, start), expected, text)
 
     def test_slopes_are_those_of_differences(self):
-        for text in ("atan(t)", "atan(sin(2*t) - t)", "atan(exp(-t))", "sqrt(1 + t^2)", "tanh(t)/(2 + cos(t))", "t^2/3", "3/(1 + t)", "log(2 + t)*exp(-t)"):
+        for text in ("atan(t)", "atan(sin(2*t) - t)", "atan(exp(-t))", "sqrt(1 + t^2)", "sqrt(0.3 + (sin(1.7*t) - t)^2)",
+                     "sqrt((1 - 2*t)^2 + 2)", "sqrt(9 + t^2)/(1 + t)", "tanh(t)/(2 + cos(t))", "t^2/3", "3/(1 + t)", "log(2 + t)*exp(-t)"):
             tree = checker.formula(text)
             slope, moved = checker.derivative(tree), checker.Fraction(1, 10**6)
             for t in (checker.Fraction(k, 3) for k in range(1, 12)):

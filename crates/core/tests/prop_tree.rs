@@ -6,7 +6,7 @@ use crate::common::random::{Random, inertia_of};
 use forwardstep_core::robot::tree::{
     Anchor, Axes, JointKind, LinkJoint, LinkPoint, LinkSpec, Placement, PointWrench, Tree, TreeScratch,
 };
-use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::robot::{Called, Lagrangian, TwoVelocity};
 use forwardstep_core::{Lanes, LengthError, Scalar};
 use proptest::prelude::*;
 
@@ -29,8 +29,8 @@ fn dispatched<S: Scalar>(tree: &Tree, x: &Columns<S>, theta: &[S]) -> [Vec<S>; 3
     let n = tree.joint_count();
     let mut scratch = tree.scratch();
     let [mut y_theta, mut yt_s, mut ddq] = [vec![S::ZERO; n], vec![S::ZERO; theta.len()], vec![S::ZERO; n]];
-    tree.slotine_li(&mut scratch, motion(x), theta, &x[4], &mut y_theta, &mut yt_s).unwrap();
-    tree.acceleration(&mut scratch, &x[0], &x[1], theta, &x[4], &mut ddq).unwrap();
+    Called(tree).regressor_products(&mut scratch, motion(x), theta, &x[4], &mut y_theta, &mut yt_s).unwrap();
+    Called(tree).forward_dynamics(&mut scratch, &x[0], &x[1], theta, &x[4], &mut ddq).unwrap();
     [y_theta, yt_s, ddq]
 }
 
@@ -225,8 +225,11 @@ fn prop_wrong_lengths_are_errors() {
                 lengths.map(|length| vec![0.5; length]);
             let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
             let results: [(&[usize], Result<(), LengthError>); 6] = [
-                (&[0, 1, 2, 3, 4, 5, 6, 7], tree.slotine_li(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s)),
-                (&[0, 1, 4, 5, 6], tree.acceleration(&mut scratch, &q, &dq, &theta, &s, &mut out)),
+                (
+                    &[0, 1, 2, 3, 4, 5, 6, 7],
+                    Called(tree).regressor_products(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s),
+                ),
+                (&[0, 1, 4, 5, 6], Called(tree).forward_dynamics(&mut scratch, &q, &dq, &theta, &s, &mut out)),
                 (&[0, 6, 8], tree.mass_matrix(&mut scratch, &q, &theta, &mut matrix)),
                 (&[0, 1, 6, 8], tree.coriolis_matrix(&mut scratch, &q, &dq, &theta, &mut matrix)),
                 (&[0, 5, 6], tree.gravity(&mut scratch, &q, &theta, &mut out)),
@@ -251,8 +254,8 @@ fn prop_foreign_scratch_is_an_error() {
         let (mut out, mut yt_s, mut matrix) = (vec![0.0; 4], vec![0.0; theta.len()], vec![0.0; 16]);
         let mut y = vec![0.0; 4 * theta.len()];
         let want = Err(LengthError { what: "scratch", need: 4, got: joints });
-        assert_eq!(tree.slotine_li(&mut scratch, motion(&x), theta, &x[4], &mut out, &mut yt_s), want);
-        assert_eq!(tree.acceleration(&mut scratch, &x[0], &x[1], theta, &x[4], &mut out), want);
+        assert_eq!(Called(tree).regressor_products(&mut scratch, motion(&x), theta, &x[4], &mut out, &mut yt_s), want);
+        assert_eq!(Called(tree).forward_dynamics(&mut scratch, &x[0], &x[1], theta, &x[4], &mut out), want);
         assert_eq!(tree.mass_matrix(&mut scratch, &x[0], theta, &mut matrix), want);
         assert_eq!(tree.coriolis_matrix(&mut scratch, &x[0], &x[1], theta, &mut matrix), want);
         assert_eq!(tree.gravity(&mut scratch, &x[0], theta, &mut out), want);
@@ -358,9 +361,9 @@ fn allocations<S: Scalar>(splat: impl Fn(f64) -> S) {
     let wrench = PointWrench { force: [splat(1.0); 3], moment: [splat(2.0); 3], axes: Axes::Base };
     let counted = allocation_counter::measure(|| {
         tree.regressor_products(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s).unwrap();
-        tree.slotine_li(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s).unwrap();
+        Called(tree).regressor_products(&mut scratch, motion, &theta, &s, &mut out, &mut yt_s).unwrap();
         tree.forward_dynamics(&mut scratch, &q, &dq, &theta, &s, &mut out).unwrap();
-        tree.acceleration(&mut scratch, &q, &dq, &theta, &s, &mut out).unwrap();
+        Called(tree).forward_dynamics(&mut scratch, &q, &dq, &theta, &s, &mut out).unwrap();
         tree.mass_matrix(&mut scratch, &q, &theta, &mut matrix).unwrap();
         tree.coriolis_matrix(&mut scratch, &q, &dq, &theta, &mut matrix).unwrap();
         tree.gravity(&mut scratch, &q, &theta, &mut out).unwrap();

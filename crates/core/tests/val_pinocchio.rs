@@ -2,7 +2,7 @@
 
 use crate::common::{dot, error, model, models, times, transpose_times};
 use forwardstep_core::robot::tree::{Axes, LinkPoint, PointWrench};
-use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::robot::{Called, Lagrangian, TwoVelocity};
 
 const TOLERANCE: f64 = 1.0e-11;
 
@@ -43,9 +43,9 @@ fn val_pinocchio_torque_and_gradient() {
         for state in &model.states {
             let one = TwoVelocity { q: &state.q, dq: &state.dq, z: &state.dq, dz: &state.dz };
             let two = TwoVelocity { z: &state.z, ..one };
-            tree.slotine_li(&mut scratch, one, theta, &state.tau, &mut tau, &mut yt_s).unwrap();
+            Called(tree).regressor_products(&mut scratch, one, theta, &state.tau, &mut tau, &mut yt_s).unwrap();
             assert!(error(&tau, &state.rnea) < TOLERANCE, "rnea of {}", model.name);
-            tree.slotine_li(&mut scratch, two, theta, &state.tau, &mut tau, &mut yt_s).unwrap();
+            Called(tree).regressor_products(&mut scratch, two, theta, &state.tau, &mut tau, &mut yt_s).unwrap();
             assert!(error(&tau, &state.two_velocity) < TOLERANCE, "two-velocity torque of {}", model.name);
             if let Some(regressor) = &state.regressor {
                 assert!(error(&yt_s, &transpose_times(regressor, &state.tau)) < TOLERANCE, "Yᵀs of {}", model.name);
@@ -69,7 +69,7 @@ fn val_pinocchio_forward_dynamics() {
         let mut scratch = tree.scratch::<f64>();
         let mut ddq = vec![0.0; tree.joint_count()];
         for state in &model.states {
-            tree.acceleration(&mut scratch, &state.q, &state.dq, theta, &state.tau, &mut ddq).unwrap();
+            Called(tree).forward_dynamics(&mut scratch, &state.q, &state.dq, theta, &state.tau, &mut ddq).unwrap();
             let torque = |ddq: &[f64]| {
                 let (inertial, coriolis) = (times(&state.mass_matrix, ddq), times(&state.coriolis_matrix, &state.dq));
                 let sum = inertial.iter().zip(&coriolis).zip(&state.gravity).map(|((m, c), g)| m + c + g);

@@ -11,6 +11,19 @@ struct Slope {
     slope: Option<Expression>,
     /// Whether it is a quotient of polynomials, of which a checker knows the limits.
     rational: bool,
+    form: Form,
+}
+
+/// What a formula is, as far as that matters for its slope under a root.
+#[derive(Clone, Debug)]
+enum Form {
+    /// A number above zero.
+    Positive(Number),
+    /// x², by x.
+    Square(Box<Slope>),
+    /// c + x², c > 0, by c and x.
+    Raised(Number, Box<Slope>),
+    Other,
 }
 
 /// The derivative of a formula; `None` where it has kinks.
@@ -70,15 +83,22 @@ impl Algebra for Slopes {
     type Value = Slope;
 
     fn number(&mut self, number_: &Number) -> Slope {
-        Slope { value: Expression::number(number_.clone()), slope: Some(number(0.0)), rational: true }
+        let form = if number_.value() > 0.0 { Form::Positive(number_.clone()) } else { Form::Other };
+        Slope { value: Expression::number(number_.clone()), slope: Some(number(0.0)), rational: true, form }
     }
 
     fn variable(&mut self, index: usize) -> Slope {
-        Slope { value: Expression::variable(index), slope: Some(number(1.0)), rational: true }
+        Slope { value: Expression::variable(index), slope: Some(number(1.0)), rational: true, form: Form::Other }
     }
 
     fn unary(&mut self, function: Unary, a: Slope) -> Slope {
-        let Slope { value: inner, slope, rational } = a;
+        let Slope { value: inner, slope, rational, form } = a;
+        // Of √(c + x²) it is x' sin(atan(x/√c)), which stays bounded beside all that its own derivatives are made of.
+        if let (Unary::Sqrt, Form::Raised(c, x)) = (function, form) {
+            let angle = (x.value / Expression::number(c).sqrt_of()).under(Unary::Atan);
+            let slope = x.slope.map(|slope| times(slope, angle.sin_of()));
+            return Slope { value: inner.under(function), slope, rational: false, form: Form::Other };
+        }
         let a = || inner.clone();
         let outer = match function {
             Unary::Negate => Some(number(-1.0)),
@@ -95,7 +115,12 @@ impl Algebra for Slopes {
         };
         let constant = slope.as_ref().is_some_and(|slope| is(slope, 0.0));
         let slope = if constant { slope } else { slope.zip(outer).map(|(slope, outer)| times(slope, outer)) };
-        Slope { value: inner.under(function), slope, rational: rational && function == Unary::Negate }
+        Slope {
+            value: inner.under(function),
+            slope,
+            rational: rational && function == Unary::Negate,
+            form: Form::Other,
+        }
     }
 
     fn binary(&mut self, function: Binary, a: Slope, b: Slope) -> Slope {
@@ -112,11 +137,18 @@ impl Algebra for Slopes {
             Binary::Min | Binary::Max => None,
         });
         let rational = a.rational && b.rational && !matches!(function, Binary::Min | Binary::Max);
-        Slope { value: a.value.with(b.value, function), slope, rational }
+        let form = match (function, a.form, b.form) {
+            (Binary::Add, Form::Positive(c), Form::Square(x)) | (Binary::Add, Form::Square(x), Form::Positive(c)) => {
+                Form::Raised(c, x)
+            }
+            _ => Form::Other,
+        };
+        Slope { value: a.value.with(b.value, function), slope, rational, form }
     }
 
     fn power(&mut self, a: Slope, exponent: &Number) -> Slope {
         let value = a.value.clone().power(exponent.clone());
+        let form = if exponent.value() == 2.0 { Form::Square(Box::new(a.clone())) } else { Form::Other };
         let rational = a.rational && exponent.exact().is_some_and(|exponent| exponent.is_integer());
         let slope = a.slope.zip(exponent.exact()).map(|(slope, exponent)| {
             let one = BigRational::one();
@@ -131,7 +163,7 @@ impl Algebra for Slopes {
             };
             times(slope, outer)
         });
-        Slope { value, slope, rational }
+        Slope { value, slope, rational, form }
     }
 }
 
@@ -148,6 +180,9 @@ mod tests {
             turning.under(Unary::Atan),
             (-t()).exp_of().under(Unary::Atan),
             (t().power(2.0) + 1.0).sqrt_of(),
+            (number(0.3) + ((t() * 1.7).sin_of() - t()).power(2.0)).sqrt_of(),
+            (t().power(2.0) - 0.001).sqrt_of(),
+            (t().power(3.0) + 1.0).sqrt_of(),
             t().tanh_of() / (t().cos_of() + 2.0),
             (t() + 2.0).log_of() * t().exp_of(),
         ];
@@ -158,6 +193,18 @@ mod tests {
                 let close = |found: f64| (found - expected).abs() < 1e-12 * (1.0 + expected.abs());
                 assert!(found.is_some_and(close), "{formula:?} at {at}: {found:?} {expected}");
             }
+        }
+    }
+
+    /// So do those of √(c + x²), by the same.
+    #[test]
+    fn three_derivatives_of_a_root_of_a_raised_square_are_bounded_whatever_is_inside() {
+        let t = || Expression::variable(0);
+        for inside in [t(), t() * 3.0 + 1.0, (t() * 1.3).sin_of() - t()] {
+            let found = derivatives(&(inside.power(2.0) + 0.7).sqrt_of(), 3);
+            let ever = Interval { low: 0.0, high: f64::INFINITY };
+            let bounded = |each: &Expression| super::super::enclosure::late_or_whole(each, ever).is_finite();
+            assert!(found.len() == 4 && found[1..].iter().all(bounded), "{found:?}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! The arms of `validation/pinocchio/fixtures/arms.json` and motions for them.
 
-use forwardstep_core::robot::TwoVelocity;
 use forwardstep_core::robot::tree::{Assembled, JointKind, LinkJoint, LinkSpec, Placement, Tree, TreeScratch};
+use forwardstep_core::robot::{Called, Lagrangian, TwoVelocity};
 use forwardstep_core::{Lanes, Scalar};
 use serde::Deserialize;
 
@@ -93,7 +93,7 @@ impl<S: Scalar> Step<S> {
         let [q, dq, z, dz, s] = &self.states[self.next];
         let motion = TwoVelocity { q, dq, z, dz };
         let Step { tree, scratch, theta, y_theta, yt_s, .. } = self;
-        tree.slotine_li(scratch, motion, theta, s, y_theta, yt_s).unwrap();
+        Called(tree).regressor_products(scratch, motion, theta, s, y_theta, yt_s).unwrap();
         y_theta[0]
     }
 
@@ -102,7 +102,7 @@ impl<S: Scalar> Step<S> {
         self.next = (self.next + 1) % STATES;
         let [q, dq, tau, ..] = &self.states[self.next];
         let Step { tree, scratch, theta, y_theta: ddq, .. } = self;
-        tree.acceleration(scratch, q, dq, theta, tau, ddq).unwrap();
+        Called(tree).forward_dynamics(scratch, q, dq, theta, tau, ddq).unwrap();
         ddq[0]
     }
 }

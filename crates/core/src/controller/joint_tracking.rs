@@ -26,7 +26,7 @@ use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::plant::{Mechanical, Plant};
 use crate::reference::Position;
-use crate::robot::{Lagrangian, TwoVelocity};
+use crate::robot::{Called, Lagrangian, TwoVelocity};
 use crate::signal::{Block, Signal};
 use crate::{InverseQuadratic, LengthError};
 
@@ -277,7 +277,7 @@ where
         let JointTrackingWork { robot, z, dz, s, yt_s, .. } = work;
         let theta_hat = if p > 0 { &state[reference..] } else { &self.estimate_start };
         let out = SlotineLiOutput { s: &mut *s, tau: input, yt_s: &mut *yt_s };
-        self.law.output(&self.robot, robot, TwoVelocity { q, dq, z, dz }, theta_hat, out)?;
+        self.law.output(&Called(&self.robot), robot, TwoVelocity { q, dq, z, dz }, theta_hat, out)?;
         if p > 0 {
             self.law.adaptation_rate(theta_hat, yt_s, &mut d_state[reference..]);
         }
@@ -316,6 +316,7 @@ where
         LengthError::check("theta", self.robot.parameter_count(), theta.len())?;
         let (q, s) = (&truth.state[..m], &shown[first..first + m]);
         let JointTrackingWork { robot: scratch, damped, mass, difference, inverse_gamma, yt_s, .. } = work;
+        let robot = Called(robot);
         robot.mass_matrix(scratch, q, theta, mass)?;
         self.law.damping.apply(s, damped);
         let (dq, z) = (&truth.state[m..], &shown[..m]);

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::{Plant, check_external};
 use crate::LengthError;
-use crate::robot::Lagrangian;
+use crate::robot::{Called, Lagrangian};
 use crate::signal::{Block, Signal};
 
 /// M(q) q̈ + C(q, q̇) q̇ + g(q) + D q̇ = τ + τ_ext with ϑ known to nature alone. State and output: q, q̇. Input: τ. From outside: τ_ext.
@@ -74,7 +74,7 @@ impl<R: Lagrangian<f64> + Send + Sync + 'static> Plant for Mechanical<R> {
         for (torque, external) in d_q.iter_mut().zip(external) {
             *torque += external;
         }
-        self.robot.forward_dynamics(scratch, q, dq, &self.theta, d_q, ddq)?;
+        Called(&self.robot).forward_dynamics(scratch, q, dq, &self.theta, d_q, ddq)?;
         d_q.copy_from_slice(dq);
         Ok(())
     }

@@ -146,7 +146,7 @@ impl TipKinematics for PlanarTip {
         LengthError::check("Jacobian", 4, j.len())?;
         LengthError::check("rate of the Jacobian", 4, dj.len())?;
         let Posture { q, dq, theta: l, d_theta: dl } = posture;
-        let ((s1, c1), (s12, c12)) = (trig::sin_cos(q[0]), trig::sin_cos(q[0] + q[1]));
+        let ((s1, c1), (s12, c12)) = (trig::sine_and_cosine(q[0]), trig::sine_and_cosine(q[0] + q[1]));
         let both = dq[0] + dq[1];
         // The links as vectors and how these move; J turns them by a right angle.
         let (inner, outer) = ([l[0] * c1, l[0] * s1], [l[1] * c12, l[1] * s12]);
@@ -162,7 +162,7 @@ impl TipKinematics for PlanarTip {
         LengthError::check("xi", 2, xi.len())?;
         LengthError::check("v", 2, v.len())?;
         LengthError::check("kinematic gradient", 2, zt_v.len())?;
-        let ((s1, c1), (s12, c12)) = (trig::sin_cos(q[0]), trig::sin_cos(q[0] + q[1]));
+        let ((s1, c1), (s12, c12)) = (trig::sine_and_cosine(q[0]), trig::sine_and_cosine(q[0] + q[1]));
         zt_v[0] = xi[0] * (c1 * v[1] - s1 * v[0]);
         zt_v[1] = (xi[0] + xi[1]) * (c12 * v[1] - s12 * v[0]);
         Ok(())

@@ -3,6 +3,7 @@
 //! Viscous damping D, where a robot has it, is part of ϑ: its regressor is diag of the reference velocity, so the law
 //! compensates D z and the loop dissipates K + D.
 
+mod called;
 mod driven;
 mod drives;
 mod enclosed;
@@ -14,6 +15,7 @@ mod ship;
 mod stick;
 pub mod tree;
 
+pub use called::Called;
 pub use driven::{Driven, DrivenScratch};
 pub use drives::{DriveError, Drives, Friction, SMOOTHING_LOSS};
 pub use inertia_bound::{Definiteness, InertiaBound};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use forwardstep::core::LengthError;
 use forwardstep::core::robot::tree::Tree;
-use forwardstep::core::robot::{Lagrangian, TwoVelocity};
+use forwardstep::core::robot::{Called, Lagrangian, TwoVelocity};
 use forwardstep::io::UrdfRobot;
 use forwardstep::io::robot::{Dynamics, JointState};
 use thiserror::Error;
@@ -55,8 +55,8 @@ pub(crate) fn dynamics(robot: &UrdfRobot, state: &JointState) -> Result<Dynamics
     tree.gravity(&mut scratch, q, &theta, &mut gravity)?;
     let (still, mut unused) = (vec![0.0; n], vec![0.0; theta.len()]);
     let motion = TwoVelocity { q, dq, z, dz };
-    tree.slotine_li(&mut scratch, motion, &theta, &still, &mut tau, &mut unused)?;
-    tree.acceleration(&mut scratch, q, dq, &theta, &tau, &mut ddq)?;
+    Called(&**tree).regressor_products(&mut scratch, motion, &theta, &still, &mut tau, &mut unused)?;
+    Called(&**tree).forward_dynamics(&mut scratch, q, dq, &theta, &tau, &mut ddq)?;
 
     let joints: Vec<String> = robot.robot.axes.iter().map(|axis| axis.name.clone()).collect();
     for (quantity, numbers) in [("M", &mass), ("g", &gravity), ("tau", &tau), ("ddq", &ddq)] {

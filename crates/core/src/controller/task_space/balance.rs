@@ -5,7 +5,7 @@ use super::tip::TaskWork;
 use crate::LengthError;
 use crate::controller::Balance;
 use crate::plant::TaskArm;
-use crate::robot::{Lagrangian, TipKinematics, TwoVelocity};
+use crate::robot::{Called, Lagrangian, TipKinematics, TwoVelocity};
 
 /// z; ϑ̂ and θ̂.
 pub(super) type Carried<'a> = (&'a [f64], [&'a [f64]; 2]);
@@ -39,7 +39,7 @@ where
         // Y(q, 0, 0, ż) ϑ = M ż + g, and beside g stands what damping and friction take.
         let (inertia, lost) = {
             let TaskWork { robot, still, s, damped, yt_s, .. } = work;
-            let (arm, theta) = (&plant.arm.robot, &plant.arm.theta);
+            let (arm, theta) = (Called(&plant.arm.robot), &plant.arm.theta);
             let power = |torque: &[f64], s: &[f64]| -> f64 { s.iter().zip(torque).map(|(s, torque)| s * torque).sum() };
             arm.regressor_products(robot, TwoVelocity { q, dq: still, z: still, dz: s }, theta, s, damped, yt_s)?;
             let whole = power(damped, s);
@@ -59,7 +59,14 @@ where
 
         if let Some(bounds) = &self.law.bounds {
             let TaskWork { robot, dz_r, s, damped, yt_s, .. } = &mut *work;
-            self.robot.regressor_products(robot, TwoVelocity { q, dq, z, dz: dz_r }, estimate, s, damped, yt_s)?;
+            Called(&self.robot).regressor_products(
+                robot,
+                TwoVelocity { q, dq, z, dz: dz_r },
+                estimate,
+                s,
+                damped,
+                yt_s,
+            )?;
             dissipation += bounds.gained(estimate, &plant.arm.theta, yt_s);
         }
         let TaskWork { difference, inverse_gamma, inverse_lambda, push, .. } = work;

@@ -51,7 +51,7 @@ use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use crate::plant::TaskArm;
 use crate::reference::Position;
-use crate::robot::{Lagrangian, TipKinematics, TwoVelocity};
+use crate::robot::{Called, Lagrangian, TipKinematics, TwoVelocity};
 use crate::signal::{Block, Signal};
 use crate::{LengthError, ResolvedGain};
 
@@ -288,7 +288,7 @@ where
         let TaskMeasured { q, dq, x } = given.measured;
         let out = SlotineLiOutput { s: &mut work.s, tau: asked.input, yt_s: &mut work.yt_s };
         let motion = TwoVelocity { q, dq, z, dz };
-        self.law.output(&self.robot, &mut work.robot, motion, &state[l.theta..l.kinematic], out)?;
+        self.law.output(&Called(&self.robot), &mut work.robot, motion, &state[l.theta..l.kinematic], out)?;
         for k in 0..m {
             asked.input[k] -= self.kappa * work.pulled[k];
         }

@@ -99,39 +99,6 @@ impl<S: Scalar> Lagrangian<S> for Tree {
 }
 
 impl Tree {
-    /// [`Lagrangian::regressor_products`] compiled for the best instruction set of this processor: the entry for callers
-    /// that do not [`dispatch`] a larger computation around it themselves. Same bits either way.
-    ///
-    /// # Errors
-    /// [`LengthError`] when a slice has the wrong length, or `scratch` is another tree's.
-    pub fn slotine_li<S: Scalar>(
-        &self,
-        scratch: &mut TreeScratch<S>,
-        motion: TwoVelocity<'_, S>,
-        theta: &[S],
-        s: &[S],
-        y_theta: &mut [S],
-        yt_s: &mut [S],
-    ) -> Result<(), LengthError> {
-        dispatch(Fused { tree: self, scratch, motion, theta, s, y_theta, yt_s })
-    }
-
-    /// [`Lagrangian::forward_dynamics`] compiled for the best instruction set of this processor. Same bits either way.
-    ///
-    /// # Errors
-    /// [`LengthError`] when a slice has the wrong length, or `scratch` is another tree's.
-    pub fn acceleration<S: Scalar>(
-        &self,
-        scratch: &mut TreeScratch<S>,
-        q: &[S],
-        dq: &[S],
-        theta: &[S],
-        tau: &[S],
-        ddq: &mut [S],
-    ) -> Result<(), LengthError> {
-        dispatch(Forward { tree: self, scratch, q, dq, theta, tau, ddq })
-    }
-
     /// See [`Lagrangian::adaptation_scale`]. r² = tr I / 2m is the mean squared distance from the joint; a body without
     /// mass or extent takes the mean over the others, and where there is none 1 kg and 0.1 m. The scale of a damping is
     /// M_jj(q), that of an armature r² M_jj(q)/g₀².
@@ -174,44 +141,6 @@ impl Tree {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0.0, 0.0), |(count, sum), x| (count + 1.0, sum + x));
     (count > 0.0).then_some(sum / count)
-}
-
-struct Fused<'a, 'm, S> {
-    tree: &'a Tree,
-    scratch: &'a mut TreeScratch<S>,
-    motion: TwoVelocity<'m, S>,
-    theta: &'a [S],
-    s: &'a [S],
-    y_theta: &'a mut [S],
-    yt_s: &'a mut [S],
-}
-
-impl<S: Scalar> Kernel for Fused<'_, '_, S> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.tree.fused(self.scratch, self.motion, self.theta, self.s, self.y_theta, self.yt_s)
-    }
-}
-
-struct Forward<'a, S> {
-    tree: &'a Tree,
-    scratch: &'a mut TreeScratch<S>,
-    q: &'a [S],
-    dq: &'a [S],
-    theta: &'a [S],
-    tau: &'a [S],
-    ddq: &'a mut [S],
-}
-
-impl<S: Scalar> Kernel for Forward<'_, S> {
-    type Output = Result<(), LengthError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.tree.articulated(self.scratch, self.q, self.dq, self.theta, self.tau, self.ddq)
-    }
 }
 
 struct MassMatrix<'a, S> {

@@ -182,6 +182,7 @@ impl Body {
     }
 
     /// A vector of the inner frame in the joint frame.
+    #[inline(always)]
     pub(super) fn outer_vector(&self, v: Vec3<f64>) -> Vec3<f64> {
         self.coordinates.matrix().times(v)
     }

@@ -56,7 +56,7 @@ use super::{JointKind, LinkPoint};
 use crate::attitude::Quaternion;
 use crate::expression::Interval;
 use crate::robot::kinematics::{Posture, TipKinematics};
-use crate::{LengthError, trig};
+use crate::{Kernel, LengthError, dispatch, trig};
 
 /// Which translations are θ.
 ///
@@ -199,6 +199,7 @@ impl TreeTip {
     }
 
     /// Where the numbers of translation c stand in θ, if they are there.
+    #[inline(always)]
     fn place(&self, c: usize) -> Option<usize> {
         match self.uncertain {
             Uncertain::Tool if c == self.tree.bodies.len() => Some(0),
@@ -208,6 +209,7 @@ impl TreeTip {
     }
 
     /// Translation c in the inner frame of the body that carries it, and its rate.
+    #[inline(always)]
     fn translation(&self, c: usize, theta: &[f64], d_theta: &[f64]) -> (Vec3<f64>, Vec3<f64>) {
         let bodies = &self.tree.bodies;
         let of = |numbers: &[f64], at: usize| Vec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
@@ -220,6 +222,11 @@ impl TreeTip {
     }
 
     fn chain(&self, posture: Posture<'_>) -> Chain {
+        dispatch(ChainAt { tip: self, posture })
+    }
+
+    #[inline(always)]
+    fn chain_at(&self, posture: Posture<'_>) -> Chain {
         let Posture { q, dq, theta, d_theta } = posture;
         let still = Vec3::ZERO;
         let mut chain = Chain {
@@ -253,6 +260,51 @@ impl TreeTip {
     }
 }
 
+struct ChainAt<'a> {
+    tip: &'a TreeTip,
+    posture: Posture<'a>,
+}
+
+impl Kernel for ChainAt<'_> {
+    type Output = Chain;
+
+    #[inline(always)]
+    fn run(self) -> Chain {
+        self.tip.chain_at(self.posture)
+    }
+}
+
+/// vᵀ J ξ by θ, lengths checked.
+struct ByLengths<'a> {
+    tip: &'a TreeTip,
+    q: &'a [f64],
+    xi: &'a [f64],
+    v: [f64; 3],
+    out: &'a mut [f64],
+}
+
+impl Kernel for ByLengths<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let v = Vec3::splat(self.v);
+        let (mut e, mut omega) = (upright(), Vec3::ZERO);
+        for (c, body) in self.tip.tree.bodies.iter().enumerate() {
+            let (sin, cos) = trig::sin_cos(self.q[c]);
+            e = e.product(&Seat::of(body, self.q[c], sin, cos).e);
+            if body.kind == JointKind::Revolute {
+                omega = e.z.scaled_plus(body.sign * self.xi[c], omega);
+            }
+            if let Some(at) = self.tip.place(c + 1) {
+                let by = body.outer_vector(e.transpose_times(v.cross(omega)));
+                self.out[at..at + 3].copy_from_slice(&[by.x, by.y, by.z]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
 fn upright() -> Mat3<f64> {
     Mat3::splat(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 }
@@ -352,19 +404,7 @@ impl TipKinematics for TreeTip {
         for (v, coordinate) in v.iter().zip(&self.coordinates) {
             full[*coordinate] = *v;
         }
-        let v = Vec3::splat(full);
-        let (mut e, mut omega) = (upright(), Vec3::ZERO);
-        for (c, body) in self.tree.bodies.iter().enumerate() {
-            let (sin, cos) = trig::sin_cos(q[c]);
-            e = e.product(&Seat::of(body, q[c], sin, cos).e);
-            if body.kind == JointKind::Revolute {
-                omega = e.z.scaled_plus(body.sign * xi[c], omega);
-            }
-            if let Some(at) = self.place(c + 1) {
-                let by = body.outer_vector(e.transpose_times(v.cross(omega)));
-                zt_v[at..at + 3].copy_from_slice(&[by.x, by.y, by.z]);
-            }
-        }
+        dispatch(ByLengths { tip: self, q, xi, v: full, out: zt_v });
         Ok(())
     }
 }

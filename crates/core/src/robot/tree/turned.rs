@@ -70,7 +70,7 @@ impl Turned {
         for ((body, seat), q) in tree.bodies.iter().zip(&self.seats).zip(q) {
             attitude = product(attitude, *seat);
             if body.kind == JointKind::Revolute {
-                let (sin, cos) = trig::sin_cos(0.5 * q);
+                let (sin, cos) = trig::sine_and_cosine(0.5 * q);
                 attitude = product(attitude, [0.0, 0.0, body.sign * sin, cos]);
             }
         }
