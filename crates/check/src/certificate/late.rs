@@ -13,7 +13,8 @@ pub(super) struct Late {
     pub(super) within: Interval,
     /// Itself, where it is a quotient of polynomials.
     pub(super) ratio: Option<Ratio>,
-    damped: Damped,
+    /// Itself once products are multiplied out: the sum of these.
+    terms: Vec<Damped>,
     /// Sines and cosines of one angle each, by what they are multiplied with; and what the rest keeps within.
     waves: Vec<(Ratio, [Interval; 2])>,
     rest: Interval,
@@ -38,6 +39,8 @@ struct Lates {
     from_s: f64,
 }
 
+/// Terms of a sum that are kept apart.
+const MOST_TERMS: usize = 32;
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
 const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 
@@ -47,16 +50,25 @@ impl Lates {
         let known = ratio.as_ref().filter(|_| self.from_s > 0.0).and_then(|ratio| ratio.from(self.from_s));
         let within = both(within, known);
         let plain = Damped { over: None, power: None, rest: within };
-        let damped = ratio.clone().map_or(plain, |over| Damped { over: Some(over), power: None, rest: ONE });
-        Late { within, ratio, damped, waves: Vec::new(), rest: within, constant: false }
+        let term = ratio.clone().map_or(plain, |over| Damped { over: Some(over), power: None, rest: ONE });
+        Late { within, ratio, terms: vec![term], waves: Vec::new(), rest: within, constant: false }
     }
 
-    /// A product, of which exponentials that fall make more than their ends tell.
-    fn product(&self, within: Interval, ratio: Option<Ratio>, damped: Option<Damped>) -> Late {
-        let part = self.part(within, ratio);
-        let Some(damped) = damped.filter(|damped| damped.power.is_some()) else { return part };
-        let within = both(part.within, damped.within(self.from_s));
-        Late { within, rest: within, damped, ..part }
+    /// The same by the sum of `terms`, of which exponentials that fall make more than their ends tell.
+    fn multiplied_out(&self, part: Late, terms: Option<Vec<Damped>>) -> Late {
+        let Some(terms) = terms.filter(|terms| part.ratio.is_none() && terms.len() <= MOST_TERMS) else { return part };
+        if terms.iter().all(|term| term.power.is_none()) {
+            return Late { terms, ..part };
+        }
+        let sum = terms.iter().try_fold(ZERO, |sum, term| Some(sum + term.within(self.from_s)?));
+        let within = both(part.within, sum);
+        Late { within, rest: within, terms, ..part }
+    }
+
+    fn product(&self, within: Interval, ratio: Option<Ratio>, [a, b]: [&[Damped]; 2]) -> Late {
+        let pairs = || a.iter().flat_map(|a| b.iter().map(move |b| a.times(b)));
+        let terms = (a.len() * b.len() <= MOST_TERMS).then(|| pairs().collect()).flatten();
+        self.multiplied_out(self.part(within, ratio), terms)
     }
 
     /// A sum, of which sines of one angle make less than each by itself.
@@ -69,7 +81,8 @@ impl Lates {
                 None => waves.push((angle.clone(), scales)),
             }
         }
-        let part = self.part(within, ratio);
+        let terms = a.terms.iter().cloned().chain(b.terms.iter().map(|term| term.scaled(sign))).collect();
+        let part = self.multiplied_out(self.part(within, ratio), Some(terms));
         if waves.is_empty() || self.from_s == 0.0 {
             return part;
         }
@@ -100,7 +113,13 @@ impl Lates {
 impl Damped {
     /// |p| ≤ c tⁿ and g ≤ −r t make p exp(g) at most c tⁿ exp(−r t), which falls from n/r on.
     fn within(&self, from_s: f64) -> Option<Interval> {
-        let (power, rest) = (self.power.as_ref().filter(|_| from_s > 0.0)?, self.rest.size());
+        if from_s == 0.0 {
+            return None;
+        }
+        let rest = self.rest.size();
+        let Some(power) = &self.power else {
+            return Some(self.over.as_ref().map_or(Some(ONE), |over| over.from(from_s))? * self.rest);
+        };
         let falls = -power.times(&Ratio::time().inverse()?)?.from(from_s)?.high;
         let number = Ratio::number(BigRational::one());
         let over = self.over.as_ref().unwrap_or(&number);
@@ -114,6 +133,10 @@ impl Damped {
         // What is too small for a number is not zero.
         let size = size.max(f64::MIN_POSITIVE);
         Some(Interval { low: -size, high: size })
+    }
+
+    fn scaled(&self, by: Interval) -> Damped {
+        Damped { rest: by * self.rest, ..self.clone() }
     }
 
     fn times(&self, other: &Damped) -> Option<Damped> {
@@ -166,11 +189,11 @@ impl Algebra for Lates {
         match (function, &a.ratio) {
             _ if a.constant => part,
             (Unary::Negate, _) => {
-                let damped = Damped { rest: -a.damped.rest, ..a.damped.clone() };
-                Lates::scaled(Late { damped, ..part }, &a, -ONE)
+                let terms = a.terms.iter().map(|term| term.scaled(-ONE)).collect();
+                Lates::scaled(self.multiplied_out(part, Some(terms)), &a, -ONE)
             }
             (Unary::Exp, Some(power)) => {
-                Late { damped: Damped { over: None, power: Some(power.clone()), rest: ONE }, ..part }
+                Late { terms: vec![Damped { over: None, power: Some(power.clone()), rest: ONE }], ..part }
             }
             (Unary::Sin, Some(angle)) => Late { waves: vec![(angle.clone(), [ONE, ZERO])], rest: ZERO, ..part },
             (Unary::Cos, Some(angle)) => Late { waves: vec![(angle.clone(), [ZERO, ONE])], rest: ZERO, ..part },
@@ -186,7 +209,7 @@ impl Algebra for Lates {
             Binary::Add => self.sum(x + y, ratios.and_then(|(a, b)| a.plus(b)), [&a, &b], ONE),
             Binary::Subtract => self.sum(x - y, ratios.and_then(|(a, b)| a.plus(&b.negated())), [&a, &b], -ONE),
             Binary::Multiply => {
-                let part = self.product(x * y, ratios.and_then(|(a, b)| a.times(b)), a.damped.times(&b.damped));
+                let part = self.product(x * y, ratios.and_then(|(a, b)| a.times(b)), [&a.terms, &b.terms]);
                 match (a.constant, b.constant) {
                     (true, _) => Lates::scaled(part, &b, x),
                     (_, true) => Lates::scaled(part, &a, y),
@@ -196,8 +219,8 @@ impl Algebra for Lates {
             Binary::Divide => {
                 let over = b.ratio.as_ref().and_then(Ratio::inverse);
                 let rest = if over.is_some() { ONE } else { ONE / y };
-                let damped = a.damped.times(&Damped { over, power: None, rest });
-                let part = self.product(x / y, ratios.and_then(|(a, b)| a.times(&b.inverse()?)), damped);
+                let divisor = [Damped { over, power: None, rest }];
+                let part = self.product(x / y, ratios.and_then(|(a, b)| a.times(&b.inverse()?)), [&a.terms, &divisor]);
                 if b.constant { Lates::scaled(part, &a, ONE / y) } else { part }
             }
             Binary::Min | Binary::Max => {
@@ -258,5 +281,21 @@ mod tests {
         let varies = Expression::number(1.0) / t() + 1.0;
         let found = within(&(varies * t().sin_of() + t().cos_of()));
         assert!(found[0] <= -2.3 && found[1] >= 2.3, "{found:?}");
+    }
+
+    /// t e^−t is at most 1/e and falls from 1 s on, whatever swings beside it and whatever else is added before it is multiplied.
+    #[test]
+    fn sums_are_multiplied_out_before_exponentials_are_weighed() {
+        let fall = || (-t()).exp_of();
+        let e = core::f64::consts::E;
+        assert!(is_sharp(&((t() * t().sin_of() + t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
+        assert!(is_sharp(&(fall() * (t().cos_of() - t() * t().sin_of())), [-2.0 / e, 2.0 / e]));
+        assert!(is_sharp(&-((t() * t().sin_of() + t() * t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
+        // What is a quotient of polynomials is kept whole: t − t²/(1 + t) is at most one.
+        let bounded = t() - t().power(2.0) / (t() + 1.0);
+        assert!(is_sharp(&(bounded * t().sin_of()), [-1.0, 1.0]));
+        // Without an exponential there is nothing to gain, and with one that grows nothing is known.
+        assert!(within(&((t() * t().sin_of() + t().cos_of()) * 2.0))[1].is_infinite());
+        assert!(within(&((t() * t().sin_of() + t().cos_of()) * t().exp_of()))[1].is_infinite());
     }
 }
