@@ -1776,6 +1776,7 @@ class Enclosures(unittest.TestCase):
         for x in (1 - checker.Fraction(1, 2**2000), checker.Fraction(1, 4), checker.Fraction(2), checker.Fraction(10**50 + 1)):
             a, b = checker.sqrt_at(x)
             self.assertTrue(a * a <= x <= b * b and b - a <= 2**-300 * max(1, b), x)
+        for x in (checker.Fraction(0), checker.Fraction(1, 4), checker.Fraction(49, 4)): self.assertEqual(len({*checker.sqrt_at(x)}), 1, x)
         # What has no double is still on the stated side.
         for x in (-2000, -1501, 1501, 2000):
             a, b = checker.exp_at(checker.Fraction(x))
