@@ -904,7 +904,8 @@ class FalseProofs(unittest.TestCase):
         centre = ('["0.8 + 0.3*cos(t)", "0.6 + 0.3*sin(t)"]', '["0.1 + 0*t", "0"]')
         inner = lambda entry: entry["proof"]["bound"].update(within=["0.01", "0.01"])  # noqa: E731
         self.rejected("theorem-6", "target-within-reach", "leaves (1/25, 81/25)", inner, centre)
-        self.rejected("theorem-8", "sign-gain", "leaves", lambda entry: entry["proof"]["bounds"][0].update(within=["-2", "1"]))
+        for within in (["-2", "1"], ["-1", "2"]):
+            self.rejected("theorem-8", "sign-gain", "leaves", lambda entry: entry["proof"]["bounds"][0].update(within=within))  # noqa: B023
         by_entry = lambda number, *within: lambda entry: entry.update(  # noqa: E731
             proof={"kind": "entry-away", "entry": number, "bound": {"range": "for-ever", "within": list(within)}})
         self.accepted("theorem-7", "nonzero-quaternion", by_entry(1, "-3", "-2"), ("[0, 0, 0, 1] ", "[-2, 0, 0, 0] "))
@@ -1776,6 +1777,7 @@ class Enclosures(unittest.TestCase):
         for x in (1 - checker.Fraction(1, 2**2000), checker.Fraction(1, 4), checker.Fraction(2), checker.Fraction(10**50 + 1)):
             a, b = checker.sqrt_at(x)
             self.assertTrue(a * a <= x <= b * b and b - a <= 2**-300 * max(1, b), x)
+        for x in (checker.Fraction(0), checker.Fraction(1, 4), checker.Fraction(49, 4)): self.assertEqual(len({*checker.sqrt_at(x)}), 1, x)
         # What has no double is still on the stated side.
         for x in (-2000, -1501, 1501, 2000):
             a, b = checker.exp_at(checker.Fraction(x))

@@ -302,6 +302,12 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
     assert!(answer == Answer::NotCovered && because.contains("K s = tau_ext"), "{because}");
     let (answer, because) = verdict(vec![forever(hand(constant(&[0.1])))]).unwrap();
     assert!(answer == Answer::NotCovered && because.contains("never lets go of agent-2"), "{because}");
+    // A hand that stands at zero holds on to what it has.
+    assert_eq!(verdict(vec![forever(hand(constant(&[0.0])))]).unwrap().0, Answer::NotCovered);
+    // A torque that comes to zero after minutes has ended by then.
+    let fading = || Function::Formula((Expression::variable(0) * -0.01 + 1.0).larger(0.0));
+    let (answer, because) = verdict(vec![forever(Effect::Torque(Course::Each(vec![fading(), fading()])))]).unwrap();
+    assert!(answer == Answer::Holds && because.contains("t = 128 s"), "{because}");
 }
 
 #[test]

@@ -138,6 +138,10 @@ fn thm1_c_and_g_are_bounded_unless_a_revolute_joint_swings_a_prismatic_one() {
     assert_eq!((answer, rigour), (Answer::Holds, Rigour::Computed), "what slides on the base carries what turns");
     let (answer, rigour, _) = found(&tree(&[(Revolute, Z, body(1.0)), (Prismatic, Z, body(1.0))]));
     assert_eq!((answer, rigour), (Answer::Holds, Rigour::Computed), "it slides along the axis");
+    // Where nothing slides no direction is compared.
+    let (answer, rigour, evidence) = found(&tree(&[(Revolute, Z, body(1.0)), (Revolute, X, body(1.0))]));
+    assert_eq!((answer, rigour), (Answer::Holds, Rigour::Exact));
+    assert!(matches!(evidence, RobotEvidence::BoundedDynamics { sliding: false }), "{evidence:?}");
     let mut swung = tree(&[(Revolute, Z, body(1.0)), (Prismatic, X, body(1.0))]);
     let (answer, _, evidence) = found(&swung);
     assert_eq!(answer, Answer::NotShown);
@@ -149,6 +153,10 @@ fn thm1_c_and_g_are_bounded_unless_a_revolute_joint_swings_a_prismatic_one() {
     swung.enforce_limits = true;
     let (answer, rigour, evidence) = found(&swung);
     assert_eq!((answer, rigour), (Answer::Watched, Rigour::Watched));
+    // One end alone bounds nothing.
+    let mut open = swung.clone();
+    open.robot.axes[1].position_limits = Some([0.0, f64::INFINITY]);
+    assert_eq!(found(&open).0, Answer::NotShown);
     assert!(matches!(evidence, RobotEvidence::Swung { limits: Some([0.0, 0.5]), .. }));
     // One that is not kept is enough.
     let mut other = swung.clone();

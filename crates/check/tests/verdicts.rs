@@ -2,18 +2,21 @@
 
 mod asked;
 mod complex_roots;
+mod designs;
 
 use forwardstep_sim::reference::Backstepping;
 use std::sync::Arc;
 
 use crate::common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
 use crate::common::{About, answer, answers, edge, masses};
+use forwardstep_check::hypothesis::GraphEvidence;
 use forwardstep_check::{
-    Answer, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
+    Answer, Evidence, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
 };
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
+use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::reference::Choice;
 use forwardstep_core::sampled::SafeCommand;
@@ -174,6 +177,55 @@ fn control(computation_delay_s: f64) -> Option<Control> {
 }
 
 #[test]
+fn thm8_the_phase_in_which_nobody_hears_a_leader_is_counted_from_the_first_of_all() {
+    let phase = |edges, dwell_s| Phase { edges, dwell_s };
+    let whole = vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)];
+    let phases = vec![phase(whole.clone(), 1.0), phase(whole, 1.0), phase(vec![edge(2, 0, 1.0, 0)], 1.0)];
+    let report = check(&led(Schedule::once(phases), FollowingDesign::Continuous, [1.0, 1.0]));
+    let found = report.hypotheses.iter().find(|found| found.id == Id::LeaderInEveryGraph).unwrap();
+    let unheard = matches!(&found.evidence, Evidence::Graph(GraphEvidence::Unheard { phase: 3, .. }));
+    assert!(unheard && found.answer() == Answer::Violated, "{:?}", found.evidence);
+}
+
+#[test]
+fn parameters_at_a_bound_are_within_it() {
+    let said = |lower: f64, upper: f64| {
+        let mut setup = pair([constant(0.1), constant(0.1)]);
+        let law = Adaptive {
+            damping: Gain::Number(5.0),
+            adaptation: Gain::Number(1.0),
+            estimate_start: vec![lower],
+            bounds: Some(ParameterBounds::new(vec![lower], vec![upper], 0.01)),
+        };
+        (setup.agents[0].law, setup.agents[0].robot.theta) = (Arc::new(law), vec![2.0]);
+        let report = check(&setup);
+        report.hypotheses.iter().find(|found| found.id == Id::ParametersWithinBounds).map(|found| found.answer())
+    };
+    let answers =
+        [(2.0, 3.0), (1.0, 2.0), (2.001, 3.0), (1.0, 1.999)].map(|(lower, upper)| said(lower, upper).unwrap());
+    assert_eq!(answers, [Answer::Holds, Answer::Holds, Answer::Violated, Answer::Violated]);
+}
+
+#[test]
+fn every_measurement_that_is_not_exact_is_said() {
+    let said = |change: fn(&mut Control)| {
+        let mut setup = pair([constant(0.1), constant(0.1)]);
+        setup.control = control(0.0);
+        change(setup.control.as_mut().unwrap());
+        check(&setup).hypotheses.iter().any(|hypothesis| hypothesis.id == Id::ExactMeasurements)
+    };
+    assert!(!said(|_| {}));
+    assert!(
+        said(|control| control.sensors.position_noise = 1e-4) && said(|control| control.sensors.velocity_noise = 1e-4)
+    );
+    assert!(said(|control| control.sensors.tip_velocity_noise = 1e-4));
+    assert!(
+        said(|control| control.sensors.position_quantum = 1e-3)
+            && said(|control| control.sensors.velocity_quantum = 1e-3)
+    );
+}
+
+#[test]
 fn eq_the_margin_is_that_of_the_worst_agent() {
     // Masses of 1 kg and 2 kg under K = 5: λ_max(M⁻¹K) is 5 and 2.5.
     for order in [[0, 1], [1, 0]] {
@@ -280,6 +332,20 @@ fn vehicles_are_told_apart_from_rotorcraft() {
     two.agents.push(vehicle(design, Floor::Stops(0.5)));
     two.network.agents = 2;
     assert!(check(&two).hypotheses.iter().any(|h| h.answer() == Answer::Watched && h.because().contains("0.5 N")));
+    // Where one of them adapts to its mass, or could, not all have that of the plant.
+    let continuous = vehicle(ThrustKind::Continuous, Floor::Stops(1.0));
+    let known = |setup: &Setup| check(setup).hypotheses.iter().any(|hypothesis| hypothesis.id == Id::KnownMasses);
+    let mut designs = alone(continuous.clone());
+    assert!(known(&designs));
+    designs.agents.push(vehicle(design, Floor::Stops(1.0)));
+    designs.network.agents = 2;
+    assert!(!known(&designs));
+    assert_eq!(answers(&check(&designs), About::ThrustGains), [Answer::Holds]);
+    // What both say of their gains is said once.
+    let mut both = craft(None);
+    both.agents.push(vehicle(design, Floor::Stops(1.0)));
+    both.network.agents = 2;
+    assert_eq!(answers(&check(&both), About::ThrustGains), [Answer::Holds]);
     let rotors = Rotors { offset: 0.15, drag: 0.02, thrust: [0.2, 8.0] };
     assert_eq!(answer(&craft(Some(rotors)), About::Rotors), Answer::NotCovered);
 }
@@ -300,6 +366,12 @@ fn two_kinds_of_agents_are_not_of_one_theorem() {
         bounds: None,
     });
     assert_eq!(answers(&check(&mixed), About::OneKind), [], "known and unknown parameters are one kind");
+    // Who follows a target of its own agrees with nobody.
+    let mut apart = tracking(blind_mass(1.0, 1.0), vec![rest_at(0.1)]);
+    apart.agents.push(apart.agents[0].clone());
+    apart.agents[1].law = Arc::new(Known { damping: Gain::Number(5.0) });
+    apart.network.agents = 2;
+    assert_eq!(answers(&check(&apart), About::OneKind), []);
 }
 
 #[test]
@@ -360,6 +432,12 @@ fn a_passivity_filter_is_shown_for_what_keeps_still_and_for_equal_moments_of_ine
     assert_eq!(said(turning(), [10.0, 8.0, 6.0]), (Some(Answer::NotShown), Some(Answer::Holds)));
     assert_eq!(said(turning(), [8.0; 3]), (Some(Answer::Holds), Some(Answer::Holds)));
     assert_eq!(said(turning(), [8.0, 8.0, 8.001]).0, Some(Answer::NotShown));
+    // Products of inertia couple what the moments do not.
+    let mut tilted = tracking(filtered_spacecraft(), turning());
+    let inertia_kg_m2 = [[8.0, 0.5, 0.0], [0.5, 8.0, 0.0], [0.0, 0.0, 8.0]];
+    tilted.agents[0].robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: Wheels::orthogonal() });
+    let at_rest = check(&tilted).hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::TargetAtRest).unwrap();
+    assert_eq!(at_rest.answer(), Answer::NotShown);
 }
 
 #[test]
@@ -385,8 +463,10 @@ fn a_run_that_goes_on_under_a_safe_command_shows_nothing_about_what_the_law_divi
         setup.control = control(0.0);
         setup.control.as_mut().unwrap().failures.safe_command = safe_command;
         let report = check(&setup);
-        report.hypotheses.iter().find(|h| h.id == Id::NonzeroThrust).map(|h| h.answer()).unwrap()
+        let of = |id| report.hypotheses.iter().find(|h| h.id == id).map(|h| h.answer()).unwrap();
+        [of(Id::NonzeroThrust), of(Id::ThrustGains)]
     };
-    assert_eq!(said(None), Answer::Watched);
-    assert_eq!(said(Some(SafeCommand::Zero)), Answer::NotCovered);
+    // Of gains it says what it did.
+    assert_eq!(said(None), [Answer::Watched, Answer::Holds]);
+    assert_eq!(said(Some(SafeCommand::Zero)), [Answer::NotCovered, Answer::Holds]);
 }
