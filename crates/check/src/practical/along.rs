@@ -5,8 +5,8 @@
 use std::collections::HashMap;
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Recording, Signal};
+use forwardstep_sim::{Evaluator, Setup};
 use nalgebra::DVector;
 
 use super::held::Hold;
@@ -78,14 +78,18 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
     let columns = recording.columns.iter().map(|c| ((c.agent, c.signal, c.axis), &c.values[..])).collect();
     let columns = Columns(columns);
     let hold = setup.control.as_ref().map(|control| (Hold::of(control), 1.0 / control.sample_hz));
-    let sampled: Vec<(usize, Option<Gains>, bool)> = (0..setup.agents.len())
-        .map(|agent| (agent, hold.and_then(|_| gains(setup, agent)), limits(setup, agent).is_some()))
-        .filter(|(_, gains, limited)| gains.is_some() || *limited)
+    let evaluator = |agent: usize| {
+        limits(setup, agent)?;
+        setup.agents[agent].robot.kind.lagrangian().map(|robot| robot.evaluator())
+    };
+    let mut sampled: Vec<_> = (0..setup.agents.len())
+        .map(|agent| (agent, hold.and_then(|_| gains(setup, agent)), evaluator(agent)))
+        .filter(|(_, gains, evaluator)| gains.is_some() || evaluator.is_some())
         .collect();
     let mut found = Along::default();
     for row in rows(recording.t_s.len(), sampled.len()) {
         let t_s = recording.t_s[row];
-        for (agent, gains, limited) in &sampled {
+        for (agent, gains, evaluator) in &mut sampled {
             found.states += 1;
             if let (Some(gains), Some((hold, period_s))) = (gains, hold)
                 && let Some(rate) = rate(setup, &columns, *agent, gains, row)
@@ -95,8 +99,8 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
                     found.margin = Some(MarginReached { agent: *agent, t_s, sigma });
                 }
             }
-            if *limited
-                && let Some(load) = held(setup, &columns, *agent, row)
+            if let Some(evaluator) = evaluator
+                && let Some(load) = held(setup, &columns, *agent, &mut **evaluator, row)
                 && found.load.as_ref().is_none_or(|worst| load.share() > worst.load.share())
             {
                 found.load = Some(LoadReached { t_s, load });
@@ -170,7 +174,13 @@ fn rate(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row: 
 }
 
 /// The static torque of an agent at one row.
-fn held(setup: &Setup, columns: &Columns<'_>, agent: usize, row: usize) -> Option<StaticLoad> {
+fn held(
+    setup: &Setup,
+    columns: &Columns<'_>,
+    agent: usize,
+    evaluator: &mut dyn Evaluator,
+    row: usize,
+) -> Option<StaticLoad> {
     let q = columns.at(agent, Signal::Position, setup.agents[agent].robot.axes.len(), row)?;
-    load(setup, agent, &q).filter(|load| load.torque.is_finite())
+    load(setup, agent, evaluator, &q).filter(|load| load.torque.is_finite())
 }

@@ -3,8 +3,10 @@
 //! Not from the paper, derived for this software. At rest τ = g(q) = Y(q, 0, 0, 0) ϑ with the true ϑ. Where |g_j(q)| exceeds its limit the
 //! posture cannot be held, whatever the controller does; where it does not, motion may still ask for more.
 
+use std::collections::HashMap;
+
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{AgentSetup, Setup};
+use forwardstep_sim::{Evaluator, Setup};
 
 use super::PracticalAnswer;
 use super::postures::each_posture;
@@ -33,10 +35,13 @@ impl StaticLoad {
     pub fn of(setup: &Setup) -> Option<StaticLoad> {
         let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| limits(setup, *agent).is_some()).collect();
         let mut worst: Option<StaticLoad> = None;
-        let mut postures = 0;
+        let (mut postures, mut evaluators) = (0, HashMap::new());
         each_posture(setup, &those, |agent, q, _| {
             postures += 1;
-            let found = load(setup, agent, q);
+            let robot = &setup.agents[agent].robot.kind;
+            let evaluator =
+                evaluators.entry(agent).or_insert_with(|| robot.lagrangian().map(|robot| robot.evaluator()));
+            let found = evaluator.as_mut().and_then(|evaluator| load(setup, agent, &mut **evaluator, q));
             worst = match (worst.take(), found) {
                 (Some(worst), Some(found)) => Some(if found.share() > worst.share() { found } else { worst }),
                 (worst, found) => worst.or(found),
@@ -56,10 +61,12 @@ impl StaticLoad {
     }
 }
 
-/// That of one agent at `q`.
-pub(super) fn load(setup: &Setup, agent: usize, q: &[f64]) -> Option<StaticLoad> {
+/// That of one agent at `q`, with what works out its dynamics.
+pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q: &[f64]) -> Option<StaticLoad> {
     let own = &setup.agents[agent];
-    let gravity = gravity(own, q)?;
+    let rest = vec![0.0; q.len()];
+    let motion = TwoVelocity { q, dq: &rest, z: &rest, dz: &rest };
+    let gravity = &evaluator.at(&own.robot.theta, motion, &rest).ok()?.model;
     let limits = limits(setup, agent)?;
     let axes = gravity.iter().zip(limits).zip(&own.robot.axes).enumerate();
     let loads = axes.filter(|(_, ((_, limit), _))| limit.is_finite()).map(|(axis, ((g, limit), named))| StaticLoad {
@@ -71,16 +78,6 @@ pub(super) fn load(setup: &Setup, agent: usize, q: &[f64]) -> Option<StaticLoad>
         postures: 1,
     });
     loads.reduce(|worst, load| if load.share() > worst.share() { load } else { worst })
-}
-
-/// g(q); `None` for robots of another kind.
-fn gravity(agent: &AgentSetup, q: &[f64]) -> Option<Vec<f64>> {
-    let rest = vec![0.0; q.len()];
-    let motion = TwoVelocity { q, dq: &rest, z: &rest, dz: &rest };
-    let theta = &agent.robot.theta;
-    let dynamics = agent.robot.kind.lagrangian()?.dynamics_at(theta, motion).ok()?;
-    let row = |row: &[f64]| row.iter().zip(theta).map(|(y, theta)| y * theta).sum();
-    Some(dynamics.regressor.chunks_exact(theta.len().max(1)).map(row).collect())
 }
 
 /// The limits of the torques of an agent under (6)–(7), infinite where there is none; `None` where none is known.

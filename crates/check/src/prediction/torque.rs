@@ -199,26 +199,25 @@ fn of_agent(
     let mut most = allowance.as_ref().map(|_| vec![0.0_f64; axes]);
     let stride = ideal.t_s.len().div_ceil(MOST_ROWS).max(1);
     let theta = &agent.robot.theta;
+    let (mut evaluator, no_error) = (model.evaluator(), vec![0.0; axes]);
     let at = |columns: &[&[f64]], row: usize| {
         columns.iter().map(|column| column.get(row).copied()).collect::<Option<Vec<f64>>>()
     };
     for (row, t_s) in ideal.t_s.iter().enumerate() {
         let (q, dq, ddq) = (at(&q, row)?, at(&dq, row)?, at(&ddq, row)?);
         let motion = TwoVelocity { q: &q, dq: &dq, z: &dq, dz: &ddq };
-        let dynamics = model.dynamics_at(theta, motion).ok()?;
+        let along = &evaluator.at(theta, motion, &no_error).ok()?.model;
         let mut torques = Vec::with_capacity(axes);
         let begins = begins.as_ref().filter(|_| row == 0);
         for (axis, peak) in peaks.iter_mut().enumerate() {
-            let entries = dynamics.regressor[axis * theta.len()..].iter().zip(theta);
-            let along: f64 = entries.map(|(y, theta)| y * theta).sum();
-            let value = begins.map_or(along, |begins| begins[axis]);
+            let value = begins.map_or(along[axis], |begins| begins[axis]);
             if value.abs() > peak.value.abs() {
                 (peak.value, peak.t_s) = (value, *t_s);
             }
             torques.push(value.abs());
         }
         if let Some(allowance) = allowance.as_ref().filter(|_| row % stride == 0) {
-            let added = allowance.at(&dynamics);
+            let added = allowance.at(&model.dynamics_at(theta, motion).ok()?);
             most = most.zip(added).map(|(most, added)| {
                 let both = most.iter().zip(torques.iter().zip(&added));
                 both.map(|(most, (torque, added))| most.max(torque + added)).collect()
