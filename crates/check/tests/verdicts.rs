@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
 use crate::common::{About, answer, answers, edge, masses};
-use forwardstep_check::hypothesis::GraphEvidence;
+use forwardstep_check::hypothesis::{GraphEvidence, LinkEvidence};
 use forwardstep_check::{
     Answer, Evidence, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
 };
@@ -20,7 +20,7 @@ use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::{Rotors, Wheels};
 use forwardstep_core::reference::Choice;
 use forwardstep_core::sampled::SafeCommand;
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Basis, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
@@ -453,6 +453,26 @@ fn messages_that_time_out_take_edges_away_that_the_graphs_have() {
     // The delay and a period of 0.1 s.
     assert_eq!(said(Some(0.41), constant()), Some(Answer::Holds));
     assert_eq!(said(Some(0.39), constant()), Some(Answer::NotShown));
+}
+
+/// The bound of all links is known no better than that of any.
+#[test]
+fn messages_in_time_rest_on_the_weakest_of_all_delays() {
+    let swings = || {
+        let formula = Expression::variable(0).sin_of() * 0.1 + 0.2;
+        Delay::new(BoundedFormula::new(formula, 20.0))
+    };
+    let basis = |delays: [Delay; 2]| {
+        let mut setup = pair(delays);
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.message_timeout_s = Some(1.0);
+        let found = check(&setup).hypotheses.into_iter().find(|h| h.id == Id::MessagesInTime).unwrap();
+        let Evidence::Links(LinkEvidence::Ages { basis, .. }) = found.evidence else { panic!() };
+        basis
+    };
+    assert_eq!(basis([constant(0.2), constant(0.1)]), Basis::Rule);
+    assert_eq!(basis([swings(), constant(0.1)]), Basis::Enclosure);
+    assert_eq!(basis([constant(0.2), swings()]), Basis::Enclosure);
 }
 
 #[test]
