@@ -24,7 +24,7 @@ use forwardstep_sim::delay::{Basis, Delay};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
-use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
     Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, VelocitySensor,
@@ -185,6 +185,27 @@ fn thm8_the_phase_in_which_nobody_hears_a_leader_is_counted_from_the_first_of_al
     let found = report.hypotheses.iter().find(|found| found.id == Id::LeaderInEveryGraph).unwrap();
     let unheard = matches!(&found.evidence, Evidence::Graph(GraphEvidence::Unheard { phase: 3, .. }));
     assert!(unheard && found.answer() == Answer::Violated, "{:?}", found.evidence);
+}
+
+/// Of a log nothing is known beyond its end: neither that everybody hears a leader for ever, nor that somebody does not.
+#[test]
+fn own_what_a_log_of_graphs_shows_of_a_leader_is_shown_up_to_its_end() {
+    let (whole, cut) = (vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)], vec![edge(2, 0, 1.0, 0)]);
+    let other = vec![edge(2, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
+    let said = |schedule: Schedule| {
+        let report = check(&led(schedule, FollowingDesign::Continuous, [1.0, 1.0]));
+        report.hypotheses.iter().find(|found| found.id == Id::LeaderInEveryGraph).unwrap().answer()
+    };
+    for (second, known, logged) in
+        [(other, Answer::Holds, Answer::HoldsOnHorizon), (cut, Answer::Violated, Answer::NotShown)]
+    {
+        let graphs = vec![whole.clone(), second];
+        let phases = graphs.iter().map(|edges| Phase { edges: edges.clone(), dwell_s: 1.0 }).collect();
+        assert_eq!(said(Schedule::periodic(phases)), known);
+        let starts_s = (0..20).map(f64::from).collect();
+        let log = Logged { starts_s, graphs: (0..20).map(|k| k % 2).collect(), until_s: 20.0 };
+        assert_eq!(said(Schedule::logged(graphs, log)), logged);
+    }
 }
 
 #[test]
