@@ -1,12 +1,12 @@
 //! Verdicts about following a leader.
 
+mod sign;
 mod turns;
 
 use std::sync::Arc;
 
 use crate::common::kinds::{fading_power_of_time, formula, power_of_time};
 use crate::common::{About, axis, edge};
-use forwardstep_check::hypothesis::{Evidence, FollowingEvidence};
 use forwardstep_check::{Answer, Id, Report, SamplingMargin, Source, Theorem, check, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
@@ -226,22 +226,6 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
     let report = check(&switching);
     assert_eq!(report.theorem, Theorem::SwitchingLeader);
     assert_eq!(answer(&report, "in each of the graphs").0, Answer::Violated);
-}
-
-/// h sup |ξ̇₀| / α, and 1 + b/a times as much with roots −a ± b i.
-#[test]
-fn thm9_what_a_held_sign_leaves_grows_with_how_the_roots_swing() {
-    for (alpha, beta, swing) in [(1.0, 2.0, 1.0), (2.0, 3.0, 1.0), (2.0, 2.0, 2.0), (10.0, 2.0, 4.0)] {
-        let (mut setup, mut drive) = (setup(FollowingDesign::Differentiable, wave(), 90.0), 0.0);
-        assert!(setup.change_reference(|following: &mut Following| {
-            (following.alpha, following.beta) = (alpha, beta);
-            drive = following.drive_bound(None);
-        }));
-        let sign = check(&setup).hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::SetValuedSign).unwrap();
-        let Evidence::Following(FollowingEvidence::Sign { left, .. }) = sign.evidence else { panic!() };
-        let expected = 1e-3 * drive / alpha * swing;
-        assert!(drive > 1.0 && (left - expected).abs() < 1e-12, "{alpha} {beta}: {left} {expected}");
-    }
 }
 
 /// Over one graph, graphs that take turns, and late links: the same hypotheses with the same answers, but for the theorem and whose it is.
