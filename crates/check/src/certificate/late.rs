@@ -291,6 +291,8 @@ mod tests {
         assert!(is_sharp(&((t() * t().sin_of() + t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
         assert!(is_sharp(&(fall() * (t().cos_of() - t() * t().sin_of())), [-2.0 / e, 2.0 / e]));
         assert!(is_sharp(&-((t() * t().sin_of() + t() * t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
+        // What is taken away keeps its sign.
+        assert!(is_sharp(&(t() * t().sin_of() * fall() - 2.0), [-2.0 - 1.0 / e, -2.0 + 1.0 / e]));
         // What is a quotient of polynomials is kept whole: t − t²/(1 + t) is at most one.
         let bounded = t() - t().power(2.0) / (t() + 1.0);
         assert!(is_sharp(&(bounded * t().sin_of()), [-1.0, 1.0]));
