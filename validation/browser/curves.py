@@ -2,9 +2,8 @@
 
 import csv
 import io
-import time
 
-from checks import TOLERANCE_M, expect, settled, value, waited
+from checks import FRAMES, TOLERANCE_M, drawn, expect, settled, value, waited
 
 STROKED = """
 const found = new DOMParser().parseFromString(document.getElementById("stage").drawing(), "image/svg+xml");
@@ -37,7 +36,7 @@ def chart(browser, name):
             expect(all(a[0] <= b[0] for a, b in zip(points, points[1:])), f"{name}: a curve goes back in time")
         expect(set(names) <= set(texts), f"{name}: {texts} name not all of {names}")
     browser.run(DRAGGED, LEFT_PX, 0.4, RIGHT_PX)
-    time.sleep(0.2)
+    drawn(browser)
     expect(abs(value(browser, "s.time()") - 0.4 * end) < 0.01 * end, f"{name}: dragging sets the clock to {value(browser, 's.time()')} of {end}")
 
 
@@ -45,7 +44,7 @@ TURNED = """
 const stage = document.getElementById("stage"), card = document.querySelector("[data-plot=path]");
 card.scrollIntoView({ block: "center", behavior: "instant" });
 const frame = card.querySelector(".turns"), [under, over] = frame.querySelectorAll("canvas");
-const shots = () => new Promise((done) => setTimeout(() => done([under, over].map((c) => c.toDataURL()).concat(stage.drawing())), 250));
+const shots = async () => (await frames(3), [under, over].map((c) => c.toDataURL()).concat(stage.drawing()));
 const end = document.getElementById("slider").max;
 stage.go(0);
 const first = await shots();
@@ -79,7 +78,7 @@ def numbers(browser, plot):
 
 def paths(browser, name):
     """Paths in space: they follow the clock, turn by keys and by dragging together with the picture, and have the numbers of the run."""
-    still, follows, turns, both, drags, points = waited(browser, TURNED)
+    still, follows, turns, both, drags, points = waited(browser, FRAMES + TURNED)
     expect(still and follows, f"{name}: the paths are {'' if still else 'not '}left alone by the clock, dots {'' if follows else 'do not '}follow it")
     expect(turns and both and drags, f"{name}: paths turn by keys {turns}, with the picture {both}, by dragging {drags}")
     expect(points, f"{name}: pointing at a path in space moves no clock")

@@ -6,10 +6,10 @@ import signal
 import subprocess
 import time
 
-from checks import expect, settled, value
+from checks import drawn, expect, settled, value
 
 MASSES = """format = 2
-title = "Masses"
+title = "{title}"
 time = {{ end_s = {end}, record_every_s = {every} }}
 [[agents]]
 name = "point"
@@ -34,9 +34,9 @@ dwell_s = 0.02
 edges = [["point-3", "point-4"], ["point-4", "point-1"]]"""
 
 
-def masses(folder, name, network, end=4, every=0.1, count=4, law=""):
+def masses(folder, name, network, end=4, every=0.1, count=4, law="", title="Masses"):
     scenario = folder / f"{name}.toml"
-    scenario.write_text(MASSES.format(end=end, every=every, count=count, law=law, network=network))
+    scenario.write_text(MASSES.format(end=end, every=every, count=count, law=law, network=network, title=title))
     return scenario
 
 
@@ -61,9 +61,9 @@ def packet_ages(browser, page, times):
             yield t, t - max(sent, default=0.0), edge
 
 
-def ages(browser, run, folder):
+def ages(browser, folder):
     """Ages on links that carry packets: exact where the page has them all, else between two values, and never drawn as if exact."""
-    page = run("packets", masses(folder, "packets", PACKETS, end=400, every=1))
+    page = folder.run("packets", masses(folder, "packets", PACKETS, end=400, every=1))
     browser.open(page)
     found = list(packet_ages(browser, page, [0.05, 3.21, 77.7, 200.03, 333.3, 399.9]))
     wrong = [(t, true, edge["age"]) for t, true, edge in found if edge["age"] is None or abs(edge["age"] - true) > 1e-6]
@@ -72,7 +72,7 @@ def ages(browser, run, folder):
     oldest = max(true for t, true, _ in found if t == 200.03)
     said = float(re.search(r"Oldest message heard: ([\d.]+) s", words(browser)).group(1))
     expect(abs(said - oldest) < 0.006, f"packets: the oldest is {oldest}, said to be {words(browser)}")
-    page = run("many-packets", masses(folder, "many-packets", PACKETS, end=2000, every=1))
+    page = folder.run("many-packets", masses(folder, "many-packets", PACKETS, end=2000, every=1))
     browser.open(page)
     found = list(packet_ages(browser, page, [3.21, 777.7, 1500.03]))
     wrong = [(t, true, edge["between"]) for t, true, edge in found if edge["age"] is not None or not edge["between"][0] - 1e-6 <= true <= edge["between"][1] + 1e-6]
@@ -83,9 +83,9 @@ def ages(browser, run, folder):
     expect("greatest" in keys and "least" in keys, f"many packets: the delays are said to be {keys}")
 
 
-def turns(browser, run, folder):
+def turns(browser, folder):
     """Graphs that take turns more often than a page can hold: unknown from then on, and in force as long as they are."""
-    browser.open(run("turns", masses(folder, "turns", TURNS, end=90)))
+    browser.open(folder.run("turns", masses(folder, "turns", TURNS, end=90)))
     settled(browser, 30)
     expect("2 edges." in words(browser), f"turns: at 30 s {words(browser)}")
     settled(browser, 80)
@@ -94,37 +94,42 @@ def turns(browser, run, folder):
     shares = text(browser, "#network figcaption")
     expect("in force 30 s" in shares and "in force 60 s" in shares, f"turns: {shares}")
     expect("not drawn after 60 s" in value(browser, "document.querySelector('[data-plot=gantt] .canvas').getAttribute('aria-label')"), "turns: the strip says nothing")
-    browser.open(run("saw", masses(folder, "saw", "delay.saw_tooth = { min_s = 0.05, max_s = 0.4, period_s = 0.6 }\nedges.ring = {}", end=3000, every=1)))
+    browser.open(folder.run("saw", masses(folder, "saw", "delay.saw_tooth = { min_s = 0.05, max_s = 0.4, period_s = 0.6 }\nedges.ring = {}", end=3000, every=1)))
     between = [edge["between"] for t in [10, 1234, 2999] for edge in value(browser, f"s.flights({t})")]
     expect(all(b and abs(b[0] - 0.05) < 2e-3 and abs(b[1] - 0.4) < 2e-3 for b in between), f"saw: {between[:3]}")
     expect("until t =" not in text(browser, "footer"), f"saw: {text(browser, 'footer')}")
 
 
-def beyond(browser, run, folder, compare):
+def compared(folder, name, *runs):
+    subprocess.run([folder.program, "compare", *runs, "--out", folder / name], capture_output=True, check=False)
+    return folder / name / "compare.html"
+
+
+def beyond(browser, folder):
     """A run that outgrows the numbers of a page: it says from when on, and agents stay where they were."""
     law = "damping.gain = 100\n[control]\nsample_hz = 10"
     scenario = masses(folder, "unstable", "delay.constant_s = 0.1\nedges.ring = {}", end=60, every=0.02, law=law)
-    browser.open(run("unstable", scenario))
+    browser.open(folder.run("unstable", scenario))
     end = float(value(browser, 'document.getElementById("slider").max'))
     settled(browser, end)
     note = text(browser, "[data-plot=position] .beyond")
     expect("beyond what the page can draw from t =" in note.lower(), f"unstable: {note}")
     where = text(browser, "#view .where")
     expect("beyond what the page can draw" in where, f"unstable: {where}")
-    drawn = value(browser, "s.drawing()")
-    expect(all(f">point-{k}<" in drawn for k in [1, 2, 3, 4]) and "NaN" not in drawn, "unstable: agents are gone at the end")
-    browser.open(compare("unstable-beside", scenario, "double-integrators"))
+    picture = value(browser, "s.drawing()")
+    expect(all(f">point-{k}<" in picture for k in [1, 2, 3, 4]) and "NaN" not in picture, "unstable: agents are gone at the end")
+    browser.open(compared(folder, "unstable-beside", scenario, "double-integrators"))
     browser.run('document.getElementById("side").go(arguments[0])', end)
-    time.sleep(0.3)
+    drawn(browser)
     expect("eyond what the page can draw" in text(browser, ".scene .words"), f"unstable, compared: {text(browser, '.scene .words')}")
 
 
-def interrupted(browser, program, folder):
+def interrupted(browser, folder):
     """A run that was interrupted neither met nor missed its goal."""
-    text_of = subprocess.run([program, "scenarios", "theorem-2"], capture_output=True, text=True, check=True).stdout
+    text_of = folder.scenario("theorem-2")
     scenario = folder / "interrupted.toml"
     scenario.write_text(re.sub(r"record_every_s = \S+", "record_every_s = 1", re.sub(r"end_s = \S+", "end_s = 100000", text_of, count=1), count=1))
-    running = subprocess.Popen([program, "run", scenario, "--out", folder / "interrupted"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    running = subprocess.Popen([folder.program, "run", scenario, "--out", folder / "interrupted"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     time.sleep(2)
     running.send_signal(signal.SIGINT)
     running.wait(timeout=60)
@@ -134,19 +139,19 @@ def interrupted(browser, program, folder):
     expect(value(browser, "document.querySelector('.conclusion .good, .conclusion .bad') === null"), f"interrupted: a verdict on {text(browser, '.conclusion')}")
 
 
-def few(browser, run, folder):
+def few(browser, folder):
     """Constant delays are not stale, complete graphs are drawn evenly, and clocks count in the digits of their run."""
-    browser.open(run("constant", masses(folder, "constant", "delay.constant_s = 0.1\nedges.ring = {}")))
+    browser.open(folder.run("constant", masses(folder, "constant", "delay.constant_s = 0.1\nedges.ring = {}")))
     settled(browser, 2)
     faint = value(browser, "[...document.querySelectorAll('#graph-picture .edge')].map((e) => Number(e.getAttribute('opacity')))")
     expect(len(faint) == 4 and min(faint) > 0.99, f"constant: edges are drawn at {faint}")
-    browser.open(run("complete", masses(folder, "complete", "delay.constant_s = 0.1\nedges.complete = {}", end=1, count=100)))
+    browser.open(folder.run("complete", masses(folder, "complete", "delay.constant_s = 0.1\nedges.complete = {}", end=1, count=100)))
     expect("2000 of 9900 edges drawn" in words(browser), f"complete: {words(browser)}")
     for part, arrows in [("#graph-picture", ".edge"), ("#network figure", "g:has(> polygon)")]:
         senders = value(browser, f"[...document.querySelectorAll('{part} {arrows}')].map((e) => e.getAttribute('class'))")
         expect(len(senders) == 2000 and len(set(senders)) == 100, f"complete: {len(senders)} arrows of {len(set(senders))} senders in {part}")
     for end, every, least in [(0.001, 1e-5, 6), (1e5, 50, 0)]:
-        browser.open(run(f"end-{end}", masses(folder, f"end-{end}", "delay.constant_s = 0.1\nedges.ring = {}", end=end, every=every)))
+        browser.open(folder.run(f"end-{end}", masses(folder, f"end-{end}", "delay.constant_s = 0.1\nedges.ring = {}", end=end, every=every)))
         settled(browser, end / 3)
         said = text(browser, "#time")
         shown = re.match(r"t = (\d+)\.?(\d*) s", said)
@@ -155,27 +160,22 @@ def few(browser, run, folder):
         expect(3 <= lasts <= 60, f"{end} s: would play for {lasts} s")
 
 
-def instant(browser, run, folder):
+def instant(browser, folder):
     """A run that broke down where it began has no second that never passed."""
     scenario = masses(folder, "instant", "delay.constant_s = 0.1\nedges.ring = {}").read_text().replace("[-1.0, 1.0]", "[-1e12, 1e12]")
     (folder / "instant.toml").write_text(scenario)
-    browser.open(run("instant", folder / "instant.toml"))
+    browser.open(folder.run("instant", folder / "instant.toml"))
     expect("of 0 s" in text(browser, "#time") and value(browser, 'document.getElementById("slider").disabled'), f"instant: {text(browser, '#time')}")
     zoomed = value(browser, "document.getElementById('slider').max")
     expect(float(zoomed) == 0, f"instant: the slider ends at {zoomed}")
 
 
-def all_of(browser, run, program, folder):
-    def compare(name, *runs):
-        subprocess.run([program, "compare", *runs, "--out", folder / name], capture_output=True, check=False)
-        return folder / name / "compare.html"
-
-    browser.screen(1400, 900)
-    ages(browser, run, folder)
-    turns(browser, run, folder)
-    beyond(browser, run, folder, compare)
-    interrupted(browser, program, folder)
-    few(browser, run, folder)
-    instant(browser, run, folder)
+def all_of(browser, folder):
+    ages(browser, folder)
+    turns(browser, folder)
+    beyond(browser, folder)
+    interrupted(browser, folder)
+    few(browser, folder)
+    instant(browser, folder)
     complaints = browser.complaints()
     expect(not complaints, f"what is known: the console says {complaints[:2]}")

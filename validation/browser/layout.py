@@ -2,9 +2,8 @@
 
 import csv
 import io
-import time
 
-from checks import expect, value
+from checks import FRAMES, drawn, expect, value, waited
 from known import masses
 
 RING = "delay.constant_s = 0.1\nedges.ring = {}"
@@ -26,14 +25,14 @@ const names = () => [...document.querySelectorAll(".grid .plot")].filter((card) 
 const wide = () => names().map((card) => Math.round((card.querySelector(".u-wrap, .plane") ?? card).getBoundingClientRect().width));
 const before = wide();
 dispatchEvent(new Event("beforeprint"));
-await new Promise((done) => setTimeout(done, 50));
+await frames(3);
 const found = {
   main: document.querySelector("main").clientWidth, wide: wide(), columns: new Set(names().map((card) => Math.round(card.getBoundingClientRect().left))).size,
   corner: getComputedStyle(document.querySelector(".corner")).display, legend: document.getElementById("legend").clientHeight,
   curves: [...document.querySelectorAll(".plane")].map((plane) => plane.querySelectorAll("path.curve").length), overlaid: document.querySelectorAll(".plane canvas").length,
 };
 dispatchEvent(new Event("afterprint"));
-await new Promise((done) => setTimeout(done, 50));
+await frames(3);
 return { ...found, again: String(wide()) === String(before) };
 """
 
@@ -43,7 +42,7 @@ def windows(browser, page, name):
     for width, height in [(1400, 900), (1366, 768), (1280, 720), (1024, 768), (390, 844)]:
         browser.screen(width, height, touch=width == 390)
         browser.open(page)
-        time.sleep(0.3)
+        drawn(browser)
         found, about = browser.run(MEASURED), f"{name} at {width} by {height}"
         expect(found["high"] >= 205 and found["letters"] >= 10, f"{about}: the graph is {found['high']} px high with letters of {found['letters']} px")
         expect(found["texts"] > 0 and found["lost"] == 0, f"{about}: {found['lost']} of {found['texts']} names are cut or covered")
@@ -56,7 +55,7 @@ def windows(browser, page, name):
 
 def printed(browser, name):
     """A print has one column, in which everything is drawn, and nothing to press."""
-    found = browser.run(f"return (async () => {{{PRINTED}}})()")
+    found = waited(browser, FRAMES + PRINTED)
     expect(found["main"] == 700 and found["columns"] == 1 and all(600 < wide <= 700 for wide in found["wide"]), f"{name} printed: {found}")
     expect(found["corner"] == "none" and found["legend"] > 0, f"{name} printed: buttons are shown or names are not: {found}")
     expect(found["curves"] and min(found["curves"]) > 0 and found["overlaid"] == 0, f"{name} printed: planes and paths have {found['curves']} curves")
@@ -87,11 +86,11 @@ const card = document.querySelector("[data-plot=position]");
 const table = () => card.querySelector(".exports table");
 const fold = card.querySelector(".exports details");
 fold.open = true;
-await new Promise((done) => setTimeout(done, 60));
+await frames(3);
 const [all, said] = [table().querySelectorAll("th").length, card.querySelector(".exports .note")?.textContent ?? ""];
 const chip = document.querySelector("#legend button:not(.all)");
 chip.click();
-await new Promise((done) => setTimeout(done, 60));
+await frames(3);
 const few = table().querySelectorAll("th").length;
 chip.click();
 fold.open = false;
@@ -109,7 +108,7 @@ return [name, document.activeElement.dataset.pick ?? document.activeElement.tagN
 
 def tables(browser, name, columns):
     """An open table says what is drawn, and how much it leaves out."""
-    all_, few, said = browser.run(f"return (async () => {{{TABLE}}})()")
+    all_, few, said = waited(browser, FRAMES + TABLE)
     if columns > 12:
         expect(all_ == 13 and f"12 of {columns}" in said, f"{name}: {all_} columns, and {said}")
     else:
@@ -206,35 +205,35 @@ def units(browser, name, card, title, unit):
     expect(found.startswith(title) and found.endswith(f" {unit}"), f"{name}: {found} is not {title} in {unit}")
 
 
-def all_of(browser, run, folder):
+def all_of(browser, folder):
     long = folder / "long-title.toml"
     long.write_text(masses(folder, "long-title", RING).read_text().replace('"Masses"', f'"{"Long words of a title " * 8}"').replace('"point"', '"a-point-with-a-very-long-name"'))
     ten = folder / "ten-arms.toml"
-    ten.write_text(run("six-arms").with_name("scenario.toml").read_text().replace("count = 6 ", "count = 10 ").replace("end_s = 60", "end_s = 6"))
+    ten.write_text(folder.run("six-arms").with_name("scenario.toml").read_text().replace("count = 6 ", "count = 10 ").replace("end_s = 60", "end_s = 6"))
     for name, scenario in [("long-title", long), ("ten-arms", ten), ("theorem-8", None), ("ten-different-robots", None)]:
-        windows(browser, run(name, scenario), name)
+        windows(browser, folder.run(name, scenario), name)
     for name in ["theorem-8", "formation"]:
-        browser.open(run(name))
+        browser.open(folder.run(name))
         printed(browser, name)
         named(browser, name)
-    browser.open(run("theorem-8"))
+    browser.open(folder.run("theorem-8"))
     leader(browser, "theorem-8")
     saved(browser, "theorem-8", "rad")
     tables(browser, "theorem-8", 5)
     keys(browser, "theorem-8")
-    browser.open(run("seventeen", masses(folder, "seventeen", RING, count=17)))
+    browser.open(folder.run("seventeen", masses(folder, "seventeen", RING, count=17)))
     tables(browser, "seventeen", 17)
     units(browser, "seventeen", "torque", "Forces", "N")
     dashes(browser, "seventeen", ["predicted", "guaranteed for s ≡ 0"])
-    browser.open(run("hundred", masses(folder, "hundred", RING, count=100)))
+    browser.open(folder.run("hundred", masses(folder, "hundred", RING, count=100)))
     many(browser, "hundred")
     small = masses(folder, "tiny", RING)
     small.write_text(small.read_text().replace("[-1.0, 1.0]", "[-1e-12, 1e-12]"))
-    browser.open(run("tiny", small))
+    browser.open(folder.run("tiny", small))
     tiny(browser, "tiny")
-    browser.open(run("theorem-7"))
+    browser.open(folder.run("theorem-7"))
     joints(browser, "theorem-7")
-    browser.open(run("gusts"))
+    browser.open(folder.run("gusts"))
     units(browser, "gusts", "external", "External forces", "N")
     complaints = browser.complaints()
     expect(not complaints, f"layout: the console says {complaints[:2]}")
