@@ -24,8 +24,10 @@ const FALLS: f64 = 0.7;
 const EFFORT: [usize; 2] = [300_000_000, 900_000_000];
 /// What a step costs for each robot besides.
 const EACH: usize = 30;
-/// A trial ends early if it has not come this far, of its horizon, after this much of what it may take.
-const SO_FAR: [f64; 2] = [0.01, 0.1];
+/// A trial ends early if it has not come this far, of its horizon, after `EARLY` of what it may take.
+const SO_FAR: f64 = 0.01;
+/// After this much of what it may take, a trial that would not reach its end at this pace is asked why.
+const EARLY: f64 = 0.1;
 /// Steps of at most this mean length are so short for a reason that is looked for, s.
 const SHORT_S: f64 = 1e-4;
 
@@ -154,30 +156,38 @@ fn describe(tuning: Tuning, adapts: bool) -> String {
 
 /// Simulates a scenario, as long as there is `effort` left.
 fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
-    let (setup, mut bar) = (&scenario.setup, Bar::new());
+    let setup = &scenario.setup;
     let step: usize = setup.agents.iter().map(|agent| agent.robot.axes.len().pow(2) + EACH).sum();
-    let mut left = EFFORT[0].min(*effort);
-    let given = left;
-    let outcome = simulate(setup, &mut |progress| {
-        bar.update(progress);
-        left = left.saturating_sub(step);
-        let crawls = progress.t_s < SO_FAR[0] * progress.end_s && (left as f64) < (1.0 - SO_FAR[1]) * given as f64;
-        if left == 0 || crawls { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
-    bar.clear();
-    *effort -= given - left;
-    let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
-    let metrics = Metrics::of(setup, &outcome.recording, None, None);
     let end_s = setup.time.end_s;
-    match outcome.ending {
-        Ending::Completed => {}
-        Ending::Interrupted { t_s } | Ending::CutOff { t_s } => {
-            let mean_s = t_s * step as f64 / (given - left).max(1) as f64;
-            return Ok(too_many(setup, mean_s).unwrap_or_else(|| {
-                Went::Badly(format!("too many steps for a trial, which got to {} s of {end_s} s", about(t_s)))
-            }));
+    let mut asked = false;
+    let outcome = loop {
+        let given = EFFORT[0].min(*effort);
+        let (mut left, mut ends_early, mut bar) = (given, false, Bar::new());
+        let outcome = simulate(setup, &mut |progress| {
+            bar.update(progress);
+            left = left.saturating_sub(step);
+            let (taken, come) = (1.0 - left as f64 / given as f64, progress.t_s / progress.end_s);
+            ends_early = taken > EARLY && (come < SO_FAR || (!asked && come < taken));
+            if left == 0 || ends_early { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        bar.clear();
+        *effort -= given - left;
+        let outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
+        let (Ending::Interrupted { t_s } | Ending::CutOff { t_s }) = outcome.ending else { break outcome };
+        if let Some(stiff) = too_many(setup, t_s * step as f64 / (given - left).max(1) as f64) {
+            return Ok(stiff);
         }
+        if asked || !ends_early || t_s < SO_FAR * end_s {
+            let got = about(t_s);
+            return Ok(Went::Badly(format!("too many steps for a trial, which got to {got} s of {end_s} s")));
+        }
+        // Nothing makes its steps short for good: it is tried once more, to its end.
+        asked = true;
+    };
+    let metrics = Metrics::of(setup, &outcome.recording, None, None);
+    match outcome.ending {
         Ending::BrokeDown(_) => return Ok(Went::Badly(ending_sentence(setup, &outcome.ending))),
+        Ending::Completed | Ending::Interrupted { .. } | Ending::CutOff { .. } => {}
     }
     let Disagreement::Measured { last, largest, .. } = metrics.disagreement else {
         return Ok(Went::Badly("there is nothing to compare".to_owned()));
