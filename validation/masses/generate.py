@@ -12,6 +12,10 @@ Tracking: z'' is (a9). Consensus of order l, announced by Remark 7: z^(l) is (24
     z^(l) = - sum_{r=0}^{l-1} a_r z^(r) - sum_j w_ij [ sum_{r=1}^{l} a_r z^(r-1) + a_0 x - a_0 x_j(t - T_ij) ]
 
 with a_0 .. a_l the coefficients of prod (p + root).
+
+By a model, in the way the books on adaptive control write it for relative degree two: with w1' = u - f w1, w2' = x - f w2 and the
+polynomial s^2 + a1 s + a0 of the model, the input that fits is u = -a1 w1 + m (r - (a0 + a1 f) x + a1 f^2 w2), r = x_d'' + a1 x_d' + a0 x_d.
+Behind m stands v, m_hat' = -g phi (x - x_d) with phi = v/(s + p), and the input takes m_hat v + m_hat' phi.
 """
 
 import math
@@ -115,4 +119,30 @@ def consensus(order):
     return case(f"consensus of order {order}", order, [1.0, 1.7, 2.4], starts, led, network.stops(SAMPLES[-1]))
 
 
-steps.write(HERE / "masses.json", [tracking(), consensus(2), consensus(3)])
+def by_model():
+    a = steps.polynomial([1.0, 2.0])
+    zero, mass, gain = a[0] * a[1] / (a[1] ** 2 + 2 * a[0]), 2.0, 20.0
+
+    def rates(t, state):
+        x, dx, w1, w2, phi, m_hat = *(state[2 * k:2 * k + 2] for k in range(5)), state[10]
+        x_d = target(t)
+        v = [x_d[k][2] + a[1] * x_d[k][1] + a[0] * x_d[k][0] - (a[0] + a[1] * FILTER) * x[k] + a[1] * FILTER**2 * w2[k] for k in range(2)]
+        d_m_hat = -gain * sum(phi[k] * (x[k] - x_d[k][0]) for k in range(2))
+        u = [-a[1] * w1[k] + m_hat * v[k] + d_m_hat * phi[k] for k in range(2)]
+        out = list(dx) + [u[k] / mass for k in range(2)] + [u[k] - FILTER * w1[k] for k in range(2)]
+        return out + [x[k] - FILTER * w2[k] for k in range(2)] + [v[k] - zero * phi[k] for k in range(2)] + [d_m_hat], u
+
+    x = [0.4, -0.3]
+    start = x + VELOCITY + [0.0] * 2 + [v / FILTER for v in x] + [0.0] * 2 + [ESTIMATE]
+    field = lambda t, state, middle, past: rates(t, state)[0]
+    rows, gap = steps.checked(lambda h: steps.solve(field, start, SAMPLES, h, [], [0, 1]), 0.001, 1e-8)
+    print("by a model", "half as many steps change it by", gap)
+    agent = {
+        "q": [row[0:2] for row in rows], "dq": [row[2:4] for row in rows],
+        "y": [[FILTER * (row[k] - FILTER * row[6 + k]) for k in range(2)] for row in rows],
+        "theta_hat": [[row[10]] for row in rows], "tau": [rates(t, row)[1] for t, row in zip(SAMPLES, rows)],
+    }
+    return {"name": "by a model", "t_s": SAMPLES, "agents": [agent]}
+
+
+steps.write(HERE / "masses.json", [tracking(), consensus(2), consensus(3), by_model()])

@@ -4,14 +4,15 @@ use forwardstep_sim::{AgentSetup, Setup};
 
 use crate::hypothesis::{Evidence, Hypothesis, Id, KindEvidence};
 use crate::kinds::{
-    Chain, Claim, DeclaredKind, FilteredSpacecraft, KindCheck, LagrangianRobot, PositionOnlyMass, Rotorcraft,
-    Spacecraft, TaskSpaceRobot, Vehicle,
+    Chain, Claim, DeclaredKind, FilteredSpacecraft, KindCheck, LagrangianRobot, ModelledMass, PositionOnlyMass,
+    Rotorcraft, Spacecraft, TaskSpaceRobot, Vehicle,
 };
 use crate::theorem::Theorem;
 
 /// All kinds, in the order in which their hypotheses are listed.
-const KINDS: [&dyn KindCheck; 9] = [
+const KINDS: [&dyn KindCheck; 10] = [
     &PositionOnlyMass,   // (a8)
+    &ModelledMass,       // Remark 7
     &Vehicle,            // Section V-B
     &Rotorcraft,         // the same with a body
     &TaskSpaceRobot,     // Theorem 6

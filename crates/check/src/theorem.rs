@@ -50,6 +50,8 @@ pub enum Theorem {
     RobotsTrack,
     /// (a8) with (a9).
     PositionOnlyTracks,
+    /// A model and a high gain in the place of (a8).
+    ModelReference,
     /// Remark 7: (a8) with (24) in z.
     PositionOnlyAgree {
         /// ℓ.
@@ -114,6 +116,7 @@ impl Theorem {
             Theorem::RobotsTrack => "robots-track",
             Theorem::PositionOnlyTracks => "position-only-tracks",
             Theorem::PositionOnlyAgree { .. } => "remark-7",
+            Theorem::ModelReference => "model-reference",
             Theorem::ContinuousThrust => "continuous-thrust",
             Theorem::Theorem4 => "theorem-4",
             Theorem::Theorem5 => "theorem-5",
@@ -170,6 +173,7 @@ impl Theorem {
             | Theorem::Theorem6Pose
             | Theorem::Theorem6Redundant
             | Theorem::PassivityFilter
+            | Theorem::ModelReference
             | Theorem::TipVelocity
             | Theorem::ThrustByAcceleration
             | Theorem::LeaderObserver
@@ -217,6 +221,9 @@ impl fmt::Display for Theorem {
             Theorem::PositionOnlyTracks => "Section V-A, (a8) with the reference dynamics (a9)",
             Theorem::PositionOnlyAgree { order } => {
                 return write!(f, "Remark 7, (a8) with (24) of order {order} in z");
+            }
+            Theorem::ModelReference => {
+                "no theorem of the paper: a mass by a model and a high gain, of the kind that Remark 7 speaks of, as derived for this software"
             }
             Theorem::ContinuousThrust => "Section V-B, continuous control (45), (46)",
             Theorem::Theorem4 => "Theorem 4, (50) with the reference dynamics (49)",

@@ -1,8 +1,8 @@
 //! Verdicts about laws of Sections IV and V: what they need to know, and what has to be bounded.
 
 use crate::common::kinds::{
-    alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, filtered_spacecraft, formula, planar_tip,
-    power_of_time, rest_at, spacecraft, tracking, tree_tip, vehicle,
+    alone, blind_mass, cascade, chain, change_tip, fading_power_of_time, filtered_spacecraft, formula, modelled_mass,
+    planar_tip, power_of_time, rest_at, spacecraft, tracking, tree_tip, vehicle,
 };
 use crate::common::{About, answer, answers, arm, masses};
 use forwardstep_check::hypothesis::Subject;
@@ -110,13 +110,18 @@ fn thm6_a_jacobian_that_is_singular_at_the_start_is_violated() {
 }
 
 #[test]
-fn eq_a8_and_57_an_estimate_that_is_not_adapted_has_to_be_the_mass() {
+fn eq_a8_and_57_and_by_a_model_an_estimate_that_is_not_adapted_has_to_be_the_mass() {
     let blind = |adaptation, start| {
         let mut agent = blind_mass(adaptation, start);
         agent.roots_per_s.real.truncate(2);
         answer(&alone(agent), About::PositionOnlyGains)
     };
     assert_eq!([blind(5.0, 0.3), blind(0.0, 2.0), blind(0.0, 0.3)], [Answer::Holds, Answer::Holds, Answer::NotCovered]);
+    let modelled = |adaptation, start| {
+        answer(&tracking(modelled_mass(adaptation, start), vec![rest_at(0.5)]), About::ModelReferenceGains)
+    };
+    let said = [modelled(5.0, 0.3), modelled(0.0, 2.0), modelled(0.0, 0.3)];
+    assert_eq!(said, [Answer::Holds, Answer::Holds, Answer::NotCovered]);
     let flown = |gamma_star, estimate_start| {
         let design = ThrustKind::Adaptive { alpha_star: 3.0, gamma_star, estimate_start, bounds: None };
         answer(&alone(vehicle(design, Floor::Stops(1.0))), About::ThrustGains)
@@ -260,6 +265,7 @@ fn needed(agent: &AgentSetup, about: About) -> usize {
 #[test]
 fn eq_a9_and_others_need_as_many_derivatives_of_a_target_as_they_take() {
     assert_eq!(needed(&blind_mass(5.0, 0.3), About::Target), 3, "(a9) takes the jerk of its target");
+    assert_eq!(needed(&modelled_mass(5.0, 0.3), About::Target), 2, "a model takes the acceleration of its target");
     assert_eq!(needed(&planar_tip(), About::Target), 2);
     assert_eq!(needed(&spacecraft(), About::Target), 2);
     assert_eq!(needed(&filtered_spacecraft(), About::Target), 2);

@@ -14,6 +14,7 @@ mod gain;
 mod inertia;
 mod lengths;
 mod mailbox;
+mod model_reference;
 mod observer;
 mod passivity_filter;
 mod prop_lagrangian;

@@ -13,7 +13,9 @@ use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
 use forwardstep::sim::leader::{Following, FollowingDesign};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
-use forwardstep::sim::{Adaptive, Exchange, PassivityFilterLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw};
+use forwardstep::sim::{
+    Adaptive, Exchange, ModelReferenceLaw, PassivityFilterLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
+};
 
 fn shipped(name: &str) -> Setup {
     open_scenario(name).unwrap_or_else(|error| panic!("{error}")).setup
@@ -87,6 +89,14 @@ fn filtered_spacecraft() -> Setup {
     let mut setup = shipped("tumbling-target");
     let [filter, damping] = [1.0, 3.0].map(Gain::Number);
     setup.agents[0].law = Arc::new(PassivityFilterLaw { error_gain_n_m: 4.0, filter, damping });
+    setup
+}
+
+/// A mass without velocity, by a model.
+fn by_model() -> Setup {
+    let mut setup = shipped("without-velocity");
+    setup.agents[0].law = Arc::new(ModelReferenceLaw { filter_per_s: 20.0, adaptation: 8.0, estimate_start: 0.0 });
+    setup.agents[0].roots_per_s.real.pop();
     setup
 }
 
@@ -172,6 +182,7 @@ fn reports() -> Vec<Report> {
         timed_out(),
         arm_and_spacecraft(),
         filtered_spacecraft(),
+        by_model(),
         own_orders(),
         by_velocity(),
         by_acceleration([0.0; 3]),
@@ -201,6 +212,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "desired-dynamics",
         "leader-observer",
         "mixture",
+        "model-reference",
         "passivity-filter",
         "position-only-tracks",
         "remark-12",

@@ -38,8 +38,8 @@ pub mod trajectory;
 
 pub use agents::{
     Adaptive, AttitudeLaw, ChainLaw, ChainModel, ChainStep, DynamicsAt, Estimate, Evaluator, Known, LagrangianRobot,
-    PassivityFilterLaw, PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, Series, SeriesEvaluator,
-    SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
+    ModelReferenceLaw, PassivityFilterLaw, PositionOnlyLaw, ProductsAt, RobotModel, RotorcraftModel, Series,
+    SeriesEvaluator, SpacecraftModel, TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
 };
 pub use build::run;
 pub use closed_loop::{

@@ -19,6 +19,7 @@ mod law_quantities;
 mod leading;
 mod limits;
 mod links;
+mod model_reference;
 mod outside;
 mod own_reference;
 mod position_only;

@@ -60,6 +60,7 @@ fn regress_rows_within_a_step_hear_the_longest_delay() {
     let silent = [
         "chains-tracking",
         "masses-tracking",
+        "masses-by-a-model",
         "tip-of-a-planar-arm",
         "tip-of-a-tree",
         "spacecraft",

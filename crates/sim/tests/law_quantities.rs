@@ -9,8 +9,8 @@ use forwardstep_core::controller::Floor;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::Rotors;
 use forwardstep_sim::{
-    AttitudeLaw, ChainLaw, Law, PassivityFilterLaw, PositionOnlyLaw, RotorcraftModel, Setup, SetupError, TaskSpaceLaw,
-    ThrustKind, ThrustLaw, VehicleModel, simulate,
+    AttitudeLaw, ChainLaw, Law, ModelReferenceLaw, PassivityFilterLaw, PositionOnlyLaw, RotorcraftModel, Setup,
+    SetupError, TaskSpaceLaw, ThrustKind, ThrustLaw, VehicleModel, simulate,
 };
 
 /// The path of what is refused, of agent 0.
@@ -116,6 +116,11 @@ fn numbers_of_the_other_laws_are_refused_under_their_keys() {
         assert_eq!(mass(&|law| law.damping = bad), "agents[0].law.damping");
         assert_eq!(mass(&|law| law.filter_per_s = bad), "agents[0].law.filter_per_s");
         assert_eq!(mass(&|law| law.adaptation = bad), "agents[0].law.adaptation_gain");
+        let model = |change: &dyn Fn(&mut ModelReferenceLaw)| {
+            law(masses::by_model(), |law: &mut ModelReferenceLaw| change(law))
+        };
+        assert_eq!(model(&|law| law.filter_per_s = bad), "agents[0].law.filter_per_s");
+        assert_eq!(model(&|law| law.adaptation = bad), "agents[0].law.adaptation_gain");
         assert_eq!(law(craft.clone(), |law: &mut AttitudeLaw| law.alpha[0] = bad), "agents[0].law.error_gain_per_s2");
         assert_eq!(law(craft.clone(), |law: &mut AttitudeLaw| law.alpha[1] = bad), "agents[0].law.rate_gain_per_s");
         let filtered = single::filtered_craft(spin.clone(), single::targets().swap_remove(2));

@@ -1,6 +1,6 @@
 //! A point mass without velocity, (a7)–(a9), and many of them: the identity of the proof along real runs.
 
-use crate::common::masses::{consensus, tracking};
+use crate::common::masses::{by_model, consensus, tracking};
 use crate::common::{assert_first_order, balance_residual, column, last, run, truth};
 use forwardstep_sim::Signal;
 
@@ -50,10 +50,10 @@ fn prop_sampled_masses_come_closer_to_continuous_ones_in_proportion_to_the_perio
     }
 }
 
-/// Against `validation/masses`, where the velocity is measured and nothing is integrated by parts.
+/// Against `validation/masses`, where the velocity is measured and nothing is integrated by parts, or the law by a model has the form of the books.
 #[test]
 fn val_masses_without_velocity_agree_with_an_independent_solver() {
-    let setups = [tracking(), consensus(2), consensus(3)];
+    let setups = [tracking(), consensus(2), consensus(3), by_model()];
     let truths = truth::read(include_str!("../../../validation/masses/masses.json"));
     assert_eq!(truths.len(), setups.len());
     for (truth, setup) in truths.iter().zip(setups) {

@@ -206,5 +206,5 @@ fn what_is_said_of_velocities_counts_only_where_they_are_measured() {
             assert_eq!(with(0.0, 1e-3, true), Some((VelocityQuantity::Step, true)), "{name}");
         }
     }
-    assert_eq!(unmeasured, 6);
+    assert_eq!(unmeasured, 7);
 }

@@ -49,6 +49,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::AttitudeGains, gains::definite),
     (Id::PassivityFilterGains, gains::definite),
     (Id::PositionOnlyGains, gains::definite),
+    (Id::ModelReferenceGains, gains::definite),
     (Id::ThrustGains, gains::definite),
     (Id::ChainGains, gains::definite),
     (Id::ChainAdaptation, gains::definite),

@@ -82,9 +82,10 @@ pub(super) fn of(case: &Case<'_>, notation: &Notation) -> Vec<(Formula, &'static
             }
             vec![w, (gradient(estimate, gain, factors), "(58)")]
         }
-        Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) | Step::Chain(..) | Step::Outside(_) => {
-            Vec::new()
-        }
+        Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _)
+        | Step::ModelReference(_)
+        | Step::Chain(..)
+        | Step::Outside(_) => Vec::new(),
         Step::Attitude(_) | Step::PassivityFilter(_) => {
             let y = Symbol::new("y");
             let filtered = Formula::product([Symbol::new("Λ").below("f").into(), y.clone().into()]);

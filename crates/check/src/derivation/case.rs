@@ -8,8 +8,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::probe::{Counterexample, probe_reference};
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, LinearReference, PureIntegral};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, PassivityFilterLaw,
-    PositionOnlyLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
+    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, ModelReferenceLaw,
+    PassivityFilterLaw, PositionOnlyLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
 };
 use num_rational::BigRational;
 
@@ -76,6 +76,8 @@ pub enum Step {
     },
     /// (a8), with k and λ_f.
     PositionOnly([BigRational; 2]),
+    /// A model and a high gain in the place of (a8), with λ_f.
+    ModelReference(BigRational),
     /// Section V-B, with α* and k or γ*; zeros under continuous control.
     Thrust(ThrustStep, [BigRational; 2]),
     /// (99).
@@ -131,6 +133,8 @@ impl Step {
             Step::Robot { known: agent.law.is::<Known>() }
         } else if let Some(law) = agent.law.downcast::<PositionOnlyLaw>() {
             Step::PositionOnly([law.damping, law.filter_per_s].map(Number::written))
+        } else if let Some(law) = agent.law.downcast::<ModelReferenceLaw>() {
+            Step::ModelReference(Number::written(law.filter_per_s))
         } else if let Some(law) = agent.law.downcast::<ThrustLaw>() {
             let (step, numbers) = match law.design {
                 ThrustKind::Continuous => (ThrustStep::Continuous, [0.0; 2]),
@@ -176,6 +180,7 @@ impl Step {
             }
             Step::Robot { .. }
             | Step::PositionOnly(_)
+            | Step::ModelReference(_)
             | Step::Thrust(..)
             | Step::TaskSpace(_)
             | Step::TipVelocity(_)

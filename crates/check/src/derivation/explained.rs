@@ -18,7 +18,7 @@ use super::places::Places;
 use super::polynomial::Polynomial;
 use super::reduction::Reduced;
 use super::words;
-use super::{attitude, task_space};
+use super::{attitude, model_reference, task_space};
 
 impl Case<'_> {
     /// Explains it.
@@ -37,6 +37,7 @@ impl Case<'_> {
             }
             (_, Step::Attitude(gains)) => attitude::explained(self, gains),
             (_, Step::PassivityFilter(k)) => attitude::filtered(self, k),
+            (_, Step::ModelReference(rate)) => model_reference::explained(self, rate),
             (_, Step::TaskSpace(gains)) => task_space::explained(self, gains),
             (_, Step::TipVelocity([kappa, alpha])) => task_space::by_velocity(self, kappa, alpha),
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
@@ -59,7 +60,7 @@ impl Case<'_> {
     /// What is measured of its plant.
     fn measured(&self) -> Measured {
         match &self.step {
-            Step::PositionOnly(_) => Measured { plant: 2, below: 1 },
+            Step::PositionOnly(_) | Step::ModelReference(_) => Measured { plant: 2, below: 1 },
             Step::Robot { .. }
             | Step::Thrust(..)
             | Step::Attitude(_)
@@ -110,7 +111,7 @@ impl Case<'_> {
         Some(match &self.step {
             Step::Robot { known } => lower::robot(self.outside(), *known, None),
             Step::PositionOnly([k, _]) => lower::position_only(self.outside(), k),
-            Step::Thrust(ThrustStep::Continuous, _) | Step::Outside(_) => return None,
+            Step::Thrust(ThrustStep::Continuous, _) | Step::ModelReference(_) | Step::Outside(_) => return None,
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
             Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => lower::thrust(alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
@@ -134,7 +135,7 @@ impl Case<'_> {
     pub fn notation(&self) -> Notation {
         let position = match self.step {
             Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::Outside(_) => "q",
-            Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..) => "x",
+            Step::PositionOnly(_) | Step::ModelReference(_) | Step::Thrust(..) | Step::Chain(..) => "x",
             Step::Attitude(_) | Step::PassivityFilter(_) => "ω",
         };
         let alone = self.setup.agents.len() == 1 || self.is_led_to_target();

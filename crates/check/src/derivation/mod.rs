@@ -28,6 +28,7 @@ pub mod form;
 pub mod formula;
 pub mod laplacian;
 pub mod lower;
+mod model_reference;
 pub mod notation;
 mod observer;
 mod places;

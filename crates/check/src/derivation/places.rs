@@ -175,8 +175,11 @@ fn own_step(case: &Case<'_>, order: usize, places: Places) -> Places {
             reduced: "",
             ..places
         },
-        Step::Attitude(_) | Step::PassivityFilter(_) | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::Outside(_) => {
-            places
-        }
+        Step::Attitude(_)
+        | Step::PassivityFilter(_)
+        | Step::ModelReference(_)
+        | Step::TaskSpace(_)
+        | Step::TipVelocity(_)
+        | Step::Outside(_) => places,
     }
 }

@@ -92,6 +92,7 @@ impl Case<'_> {
                 | Step::Thrust(ThrustStep::Continuous | ThrustStep::Adaptive | ThrustStep::ByAcceleration, _)
                 | Step::Attitude(_)
                 | Step::PassivityFilter(_)
+                | Step::ModelReference(_)
                 | Step::TaskSpace(_)
                 | Step::TipVelocity(_)
                 | Step::Outside(_),

@@ -88,6 +88,12 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
             "V = ½ m sᵀs + (k/2λ_f) yᵀy + Δm²/(2γ*) has V̇ = −k yᵀy whatever z does. So s, y and m̂ are bounded, and y is \
              square-integrable."
         }
+        Step::ModelReference(_) => {
+            "Not from the paper, but in the manner of the literature with which Remark 7 compares (a8). V = ½ m (eᵀe + c rᵀr) + ½ h δᵀδ + Δm²/(2γ*) has \
+             V̇ = −m b eᵀe − m c p rᵀr − c α₁ rᵀδ − h λ_f δᵀδ, with c = 1/(α₀ − p b), h = α₁² c/(2 m p λ_f) and b = α₁ − p: the last three are \
+             together not positive. So e, r, δ and m̂ are bounded and the errors square-integrable; x, y and φ are bounded, and with them ė: e → 0, then \
+             r → 0 and ė → 0. m̂' φ = −γ* (eᵀφ) φ is a gain on e that grows with the square of φ."
+        }
         Step::Thrust(ThrustStep::Continuous, _) => "",
         Step::Thrust(ThrustStep::Differentiable, _) => {
             "The lower subsystem is linear and exponentially stable, and nothing drives it: s* → 0 with its derivatives."
@@ -222,6 +228,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Step::PositionOnly(_) => "So the variables of the upper subsystem are bounded, and y and s vanish",
         Step::Attitude(_)
         | Step::PassivityFilter(_)
+        | Step::ModelReference(_)
         | Step::TaskSpace(_)
         | Step::TipVelocity(_)
         | Step::Chain(..)

@@ -189,6 +189,9 @@ table! {
     PositionOnlyGains, "position-only-gains", "(a8), Remark 7", Source::Corrected("E9, E10"),
         "k, λ_f and γ* are positive",
         "a k, λ_f or γ* that is zero or negative: V then need not fall";
+    ModelReferenceGains, "model-reference-gains", "own derivation", Source::Derived,
+        "λ_f and γ* are positive",
+        "a λ_f or γ* that is zero or negative: V then need not fall";
     KnownMasses, "known-masses", "(45)", Source::Paper,
         "the masses are known",
         "a wrong mass: the thrust then carries too much or too little, and vehicles drift";

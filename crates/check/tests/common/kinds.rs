@@ -13,8 +13,8 @@ use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
     AgentSetup, AttitudeLaw, Axis, AxisUnit, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, Law,
-    PassivityFilterLaw, PositionOnlyLaw, Robot, RobotSetup, Setup, SpacecraftModel, Start, TaskSpaceLaw, ThrustKind,
-    ThrustLaw, TipSetup, VehicleModel,
+    ModelReferenceLaw, PassivityFilterLaw, PositionOnlyLaw, Robot, RobotSetup, Setup, SpacecraftModel, Start,
+    TaskSpaceLaw, ThrustKind, ThrustLaw, TipSetup, VehicleModel,
 };
 
 use super::{axis, setup};
@@ -88,6 +88,12 @@ pub fn blind_mass(adaptation: f64, estimate_start: f64) -> AgentSetup {
         agent(Arc::new(PointMass { dimension: 1 }), vec![2.0], law, start(&[0.3], &[0.0], &[]), 1, AxisUnit::Metre);
     agent.roots_per_s = vec![1.0, 1.5, 2.0].into();
     agent
+}
+
+/// The same by a model.
+pub fn modelled_mass(adaptation: f64, estimate_start: f64) -> AgentSetup {
+    let law = Arc::new(ModelReferenceLaw { filter_per_s: 20.0, adaptation, estimate_start });
+    AgentSetup { law, roots_per_s: vec![1.0, 2.0].into(), ..blind_mass(adaptation, estimate_start) }
 }
 
 /// A vehicle of 2 kg.

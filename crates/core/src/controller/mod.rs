@@ -12,6 +12,7 @@
 //!   for high orders, and `recursion` takes the faster one.
 //! - `feedback`: any, from closures.
 //! - `guide`: where z leads, for plants of any order.
+//! - `model_reference`: a point mass by a model and a high gain, without velocity and reference dynamics, beside (a8) and (a9).
 //! - `passivity_filter`: a spacecraft by a filter of its attitude error, without reference dynamics, beside Theorem 7.
 //! - `position_only`: (a7)–(a9), a point mass without velocity measurement.
 //! - `thrust`: (45)–(58), vehicles with one thrust, by angular velocities or by torques; and beside it, by a measured acceleration.
@@ -28,6 +29,7 @@ mod interior;
 mod jets;
 mod joint_tracking;
 mod linearising;
+mod model_reference;
 mod passivity_filter;
 mod position_only;
 mod recursion;
@@ -47,6 +49,7 @@ pub use immersion::{Immersion, ImmersionWork};
 pub use jets::{Jet, Jets, JetsBuffer};
 pub use joint_tracking::{JointTracking, JointTrackingWork, MotionMeasured};
 pub use linearising::Linearising;
+pub use model_reference::ModelReference;
 pub use passivity_filter::PassivityFilter;
 pub use position_only::{PositionMeasured, PositionOnly};
 pub(crate) use stepped::Lengths;

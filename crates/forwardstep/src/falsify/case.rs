@@ -39,6 +39,8 @@ pub(crate) enum System {
     Ship,
     /// Point masses whose velocity is not measured.
     PositionOnly,
+    /// The same by a model and a high gain.
+    ByModel,
     /// A vehicle with one thrust, under one of its designs.
     Vehicle(Thrust),
     /// Derivatives of one number, of this order.
@@ -277,6 +279,7 @@ fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
         (other, follow),
         (System::PositionOnly, positions),
         (System::PositionOnly, track),
+        (System::ByModel, track),
         (System::Vehicle(thrust), positions),
         (System::Chain(order), positions),
         (System::Chain(order), track),
@@ -291,7 +294,7 @@ fn exact_order(system: System, course: Course) -> bool {
     match course {
         Course::Integral { .. } | Course::Follow { .. } => true,
         Course::Track { .. } => {
-            matches!(system, System::Spacecraft { .. } | System::Tip { .. } | System::PositionOnly)
+            matches!(system, System::Spacecraft { .. } | System::Tip { .. } | System::PositionOnly | System::ByModel)
         }
         Course::Agree { .. } => matches!(system, System::Vehicle(_) | System::PositionOnly),
     }

@@ -120,6 +120,7 @@ mod tests {
             System::Arm,
             System::Ship,
             System::PositionOnly,
+            System::ByModel,
             System::Spacecraft { filtered: false },
             System::Spacecraft { filtered: true },
             System::Tip { measured: false },

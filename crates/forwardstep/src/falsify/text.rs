@@ -43,7 +43,7 @@ impl Case {
     fn axes(&self) -> usize {
         match self.system {
             System::Mass(axes) => axes,
-            System::Arm | System::Tip { .. } | System::PositionOnly => 2,
+            System::Arm | System::Tip { .. } | System::PositionOnly | System::ByModel => 2,
             System::Ship | System::Vehicle(_) => 3,
             System::Chain(_) => 1,
             System::Spacecraft { .. } => 4,
@@ -61,7 +61,7 @@ impl Case {
         const ARM: &str = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }";
         match self.system {
             System::Mass(axes) => format!("robot.point_mass = {{ mass_kg = 2, dimension = {axes} }}"),
-            System::PositionOnly => "robot.point_mass = { mass_kg = 2, dimension = 2 }".into(),
+            System::PositionOnly | System::ByModel => "robot.point_mass = { mass_kg = 2, dimension = 2 }".into(),
             System::Arm | System::Tip { .. } => ARM.into(),
             System::Ship => "robot.ship = { inertia = { surge_kg = 20, sway_kg = 25, yaw_kg_m2 = 3 } }".into(),
             System::Vehicle(_) => "robot.vehicle = { mass_kg = 1.5 }".into(),
@@ -78,7 +78,9 @@ impl Case {
     fn start(&self, at: &[f64; 3]) -> String {
         let entries = &at[..self.axes().min(3)];
         match self.system {
-            System::Mass(_) | System::PositionOnly | System::Chain(_) => format!("start.position_m = {entries:?}"),
+            System::Mass(_) | System::PositionOnly | System::ByModel | System::Chain(_) => {
+                format!("start.position_m = {entries:?}")
+            }
             System::Vehicle(_) => format!("start.position_m = [{}, {}, {}]", 2.0 * at[0], 2.0 * at[1], at[2] - 2.0),
             System::Arm => format!("start.position_rad = {entries:?}"),
             // Away from where it is stretched.
@@ -106,6 +108,7 @@ impl Case {
             | System::Arm
             | System::Ship
             | System::PositionOnly
+            | System::ByModel
             | System::Vehicle(_)
             | System::Chain(_) => (0..self.axes()).map(wave).collect(),
         };
@@ -135,6 +138,9 @@ impl Case {
             System::PositionOnly => {
                 "[law.position_only]\ndamping = 20\nfilter_per_s = 20\nadaptation_gain = 8\nestimate_start_kg = 1.5\n"
                     .into()
+            }
+            System::ByModel => {
+                "[law.model_reference]\nfilter_per_s = 20\nadaptation_gain = 8\nestimate_start_kg = 1.5\n".into()
             }
             System::Vehicle(thrust) => {
                 let design = match thrust {

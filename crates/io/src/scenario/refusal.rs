@@ -60,7 +60,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::SendsPositionOnly { .. } => "write `exchange = \"position\"`".to_owned(),
         SetupError::ReferenceOfLaw { .. } => "write `reference.consensus` with `exchange = \"position\"`".to_owned(),
         SetupError::NotTracking { .. } => {
-            "write `reference.consensus`; laws that track are `adaptive`, `known`, `position_only`, `task_space`, `attitude`, `passivity_filter` and those of chains".to_owned()
+            "write `reference.consensus`; laws that track are `adaptive`, `known`, `position_only`, `model_reference`, `task_space`, `attitude`, `passivity_filter` and those of chains".to_owned()
         }
         SetupError::OnlyTracks { .. } => "write `reference.tracking`, and give it a `target`".to_owned(),
         SetupError::StartOfReference { error, .. } => match error.need {

@@ -32,7 +32,7 @@ disagreement_below = 1e-3
 #[rustfmt::skip]
 const BLIND_CASES: &[Case] = &[
     ("[law.position_only]", "[law.position_olny]",
-        "test.toml:14:6: unknown choice `position_olny`", "did you mean `position_only`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+        "test.toml:14:6: unknown choice `position_olny`", "did you mean `position_only`? choose one of `adaptive`, `known`, `position_only`, `model_reference`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("damping = 20", "damping = -20",
         "test.toml:15:11: `damping` is -20, but must be positive", ""),
     ("damping = 20", "damping = [20, 20]",

@@ -165,7 +165,7 @@ const SPACECRAFT_CASES: &[Case] = &[
     ("[reference.tracking]\n", "[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges = []\n",
         "test.toml:22:2: agent `craft`: the law for an attitude follows a target of its own; it does not agree with others", "write `reference.tracking`, and give it a `target`"),
     ("[law.attitude]", "[law.atitude]",
-        "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+        "test.toml:24:6: unknown choice `atitude`", "did you mean `attitude`? choose one of `adaptive`, `known`, `position_only`, `model_reference`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s2 = 0",
         "test.toml:25:21: `error_gain_per_s2` is 0, but must be positive", ""),
     ("error_gain_per_s2 = 0.5", "error_gain_per_s = 0.5",

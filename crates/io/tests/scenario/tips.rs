@@ -37,7 +37,7 @@ error_below = 1e-3
 #[rustfmt::skip]
 const TIP_CASES: &[Case] = &[
     ("[law.task_space]", "[law.taskspace]",
-        "test.toml:15:6: unknown choice `taskspace`", "did you mean `task_space`? choose one of `adaptive`, `known`, `position_only`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
+        "test.toml:15:6: unknown choice `taskspace`", "did you mean `task_space`? choose one of `adaptive`, `known`, `position_only`, `model_reference`, `thrust`, `task_space`, `attitude`, `passivity_filter`, `linearising`, `linear_adaptive`, `immersion`, `adaptive_backstepping`"),
     ("damping.bandwidth_per_s = 40", "damping.bandwidth_per_s = 0",
         "test.toml:16:27: `damping.bandwidth_per_s` is 0, but must be positive", ""),
     ("damping.bandwidth_per_s = 40", "damping.bandwidth = 40",

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, AxisUnit, PositionOnlyLaw, RobotSetup, Setup, Start};
+use forwardstep_sim::{AgentSetup, AxisUnit, ModelReferenceLaw, PositionOnlyLaw, RobotSetup, Setup, Start};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -38,6 +38,14 @@ pub fn tracking() -> Setup {
     let mut agent = mass(1, 2.0, [0.4, -0.3], &[1.0, 1.5, 2.0]);
     agent.target = Some(Trajectory::new(vec![wave(0.1, 1.0, 1.0, 0.4), wave(0.1, 0.5, 1.7, 0.4)]).unwrap());
     setup(vec![agent], Arc::new(Tracking), silent(1), 40.0)
+}
+
+/// The same by a model in the place of (a9).
+pub fn by_model() -> Setup {
+    let mut setup = tracking();
+    setup.agents[0].roots_per_s = vec![1.0, 2.0].into();
+    setup.agents[0].law = Arc::new(ModelReferenceLaw { filter_per_s: 20.0, adaptation: 20.0, estimate_start: 0.3 });
+    setup
 }
 
 pub fn consensus(order: usize) -> Setup {

@@ -139,6 +139,7 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("chains-pure-feedback", chains::pure_feedback()),
         ("chains-tracking", chains::tracking()),
         ("masses-tracking", masses::tracking()),
+        ("masses-by-a-model", masses::by_model()),
         ("masses-consensus", masses::consensus(3)),
         ("vehicles-continuous", vehicles::three(&vehicle, ThrustKind::Continuous, false, 4.0)),
         ("vehicles-differentiable", vehicles::three(&vehicle, vehicles::DIFFERENTIABLE, true, 4.0)),

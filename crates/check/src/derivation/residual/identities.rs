@@ -149,7 +149,8 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
             list.adaptation(case);
             in_order(list.found)
         }
-        (_, Step::Outside(_)) | (Led::Outside(_, None) | Led::Refuted(..), _) => Vec::new(),
+        // What is recorded of a law by a model has neither η nor φ; the identity of its V is held by the balance.
+        (_, Step::Outside(_) | Step::ModelReference(_)) | (Led::Outside(_, None) | Led::Refuted(..), _) => Vec::new(),
         (_, Step::Thrust(ThrustStep::Continuous, _)) => {
             case.dynamics().map_or_else(Vec::new, |dynamics| continuous(case, &dynamics, notation))
         }

@@ -406,6 +406,7 @@ impl<'c, 'a> At<'c, 'a> {
             Step::Chain(..) => Signal::Disturbance,
             Step::Robot { .. }
             | Step::PositionOnly(_)
+            | Step::ModelReference(_)
             | Step::Thrust(..)
             | Step::TaskSpace(_)
             | Step::TipVelocity(_)
@@ -438,6 +439,7 @@ impl<'c, 'a> At<'c, 'a> {
             Step::Robot { .. }
             | Step::Attitude(_)
             | Step::PassivityFilter(_)
+            | Step::ModelReference(_)
             | Step::TaskSpace(_)
             | Step::TipVelocity(_)
             | Step::Chain(..)

@@ -116,6 +116,7 @@ impl Kinds {
                 LawEntry::of::<adaptive::AdaptiveFile>(),
                 LawEntry::of::<adaptive::KnownFile>(),
                 LawEntry::of::<point_mass::PositionOnlyFile>(),
+                LawEntry::of::<point_mass::ModelReferenceFile>(),
                 LawEntry::of::<thrust::ThrustFile>(),
                 LawEntry::of::<task_space::TaskSpaceFile>(),
                 LawEntry::of::<spacecraft::AttitudeFile>(),

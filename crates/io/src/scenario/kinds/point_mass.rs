@@ -1,9 +1,10 @@
-//! `robot.point_mass`: a mass that is pushed along every axis, and `law.position_only`: (a8), where its velocity is not measured.
+//! `robot.point_mass`: a mass that is pushed along every axis; and where its velocity is not measured `law.position_only`, (a8), and beside it
+//! `law.model_reference`.
 
 use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
-use forwardstep_sim::{Law, PositionOnlyLaw, RobotSetup, Start};
+use forwardstep_sim::{Law, ModelReferenceLaw, PositionOnlyLaw, RobotSetup, Start};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -120,6 +121,42 @@ impl LawKind for PositionOnlyFile {
             adaptation: number_or(&self.adaptation_gain, ADAPTATION_GAIN),
             estimate_start: self.estimate_start_kg.as_ref().map_or(nearest, |start| start.value),
             bounds,
+        }))
+    }
+}
+
+/// A point mass whose velocity is not measured, by a model of two roots and a high gain, which Remark 7 of the paper compares (a8) with.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelReferenceFile {
+    /// The rate λ_f of the filters that stand in for the velocity, in 1/s. Default: 10.
+    #[schemars(with = "Option<Positive>")]
+    pub filter_per_s: Option<At<f64>>,
+    /// The gain γ* of the mass estimate. Default: 10. Zero to keep the estimate as it is.
+    #[schemars(range(min = 0))]
+    pub adaptation_gain: Option<At<f64>>,
+    /// The mass estimate at the start, in kg. Default: 0.
+    pub estimate_start_kg: Option<At<f64>>,
+}
+
+impl LawKind for ModelReferenceFile {
+    fn table() -> LawTable {
+        LawTable {
+            key: "model_reference",
+            description: "A point mass of unknown mass whose velocity is not measured, by a model and a high gain, to compare `position_only` with.",
+            made_for: "point masses without damping and friction, of which it knows no velocity to compensate them at",
+        }
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.is::<PointMass>()
+    }
+
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(ModelReferenceLaw {
+            filter_per_s: number_or(&self.filter_per_s, FILTER_PER_S),
+            adaptation: number_or(&self.adaptation_gain, ADAPTATION_GAIN),
+            estimate_start: number_or(&self.estimate_start_kg, 0.0),
         }))
     }
 }
