@@ -469,8 +469,8 @@ def rooted_out(tree, t):
 def damped(tree, t):
     powers, rest = ([part for part in factors_of(tree) if (part[:2] == ("f", "exp")) == is_one] for is_one in (True, False))
     falls = -enclose(("/", functools.reduce(plus, (part[2] for part in powers)), ("t",)), t)[1] if powers else 0
-    over = [("/", functools.reduce(times, rest, ONE), ("^", ("t",), Fraction(n))) for n in range(9)]
-    found = falls > 0 and finite(over[-1], [t]) and next((n, size(enclose(p, t))) for n, p in enumerate(over) if finite(p, [t]))
+    over = (("/", functools.reduce(times, rest, ONE), ("^", ("t",), Fraction(n)) if n else ONE) for n in range(9))
+    found = falls > 0 and next(((n, x) for n, p in enumerate(over) if not infinite(x := size(attempt(rooted_out, p, t) or WHOLE))), None)
     n, most = decided(found, "is not damped") or found
     if infinite(falls) or t == END: return (Fraction(0),) * 2
     start = max(t[0], n / falls)
