@@ -169,7 +169,7 @@ def said(number): return str(number) if len(str(number)) <= 24 else f"{float(num
 # --- Intervals with rational ends; an end that is not known is an infinite float
 
 INF, WHOLE = math.inf, (-math.inf, math.inf)
-FOR_EVER, LATE, END = (Fraction(0), INF), (Fraction(1), INF), (INF, INF)
+FOR_EVER, LATE, LATER, END = (Fraction(0), INF), (Fraction(1), INF), (Fraction(1000_000), INF), (INF, INF)
 
 def infinite(x): return isinstance(x, float)
 
@@ -330,17 +330,19 @@ def curve(times, values):
     third, fourth = ((v_4 - v) * a - (a_4 - a) * v) / determinant, ((a_3 - a) * v - (v_3 - v) * a) / determinant
     return [(-INF, times[0], [values[0]]), *zip(times, times[1:], shot(times, values, third, fourth)[0]), (times[-1], INF, [values[-1]])]
 
-# What a derivative of such a curve keeps within: a polynomial does within its Bernstein coefficients.
+# What a polynomial keeps within from 0 to an end: its Bernstein coefficients.
+def held(p, end):
+    found = [sum(Fraction(math.comb(j, k), math.comb(len(p) - 1, k)) * p[k] * end**k for k in range(j + 1)) for j in range(len(p))]
+    return span(min(found), max(found))
+
+# What a derivative of such a curve keeps within.
 def along_points(times, values, order, t):
     found = []
     for start, end, piece in curve(times, values):
         if start <= t[1] and t[0] <= end:
             rate = functools.reduce(lambda p, _: [n * c for n, c in enumerate(p)][1:] + [Fraction(0)], range(order), piece)
-            if len(rate) > 1:
-                low = max(start, t[0])
-                scaled = [c * (min(end, t[1]) - low) ** k for k, c in enumerate(moved(rate, low - start))]
-                rate = [sum(Fraction(math.comb(j, k), math.comb(5, k)) * scaled[k] for k in range(j + 1)) for j in range(6)]
-            found.append(span(min(rate), max(rate)))
+            low = max(start, t[0])
+            found.append(held(moved(rate, low - start), min(end, t[1]) - low) if rate[1:] else (rate[0],) * 2)
     return functools.reduce(hull, found)
 
 # --- Formulas: ("number", q), ("pi",), ("e",), ("t",), ("f", name, a), (op, a, b) for + - * / min max, ("^", a, q); and ("points",
@@ -425,8 +427,7 @@ def trimmed(p): return trimmed(p[:-1]) if p and p[-1] == 0 else p
 
 # P/Q for all t from a time on, or at ∞: by powers of u = 1/t both are polynomials in u, beside a power of t.
 def far(p, q, t):
-    u = inverse(t)
-    over, under = (functools.reduce(lambda value, c: add(multiply(value, u), (c, c)), of, (Fraction(0),) * 2) for of in (p, q))
+    over, under = (held(of[::-1] or [Fraction(0)], inverse(t)[1]) for of in (p, q))
     return multiply(multiply(over, inverse(under)), power(t, Fraction(len(p) - len(q))))
 
 # A formula without the absolute values, the smaller and the larger ones that are decided by signs while t keeps within an interval.
@@ -449,30 +450,41 @@ def factors_of(tree):
     if tree[0] == "/": return factors_of(tree[1]) + [("^", tree[2], Fraction(-1))]
     return factors_of(tree[1]) + factors_of(tree[2]) if tree[0] == "*" else [tree]
 
-# A quotient of polynomials, what is bounded, and the exponential of a quotient of polynomials: of |p| ≤ c tⁿ and g ≤ −r t, r > 0, the
-# product p exp(g) is at most c tⁿ exp(−r t), which falls from n/r on.
+# The square of a formula, of what is a root, or a whole power of one, without that root.
+def squared(tree):
+    if tree[0] == "^": return ("^", tree[1], 2 * tree[2]) if tree[2].denominator == 2 else ("^", squared(tree[1]), tree[2])
+    return tree[2] if tree[:2] == ("f", "sqrt") else ("^", tree, Fraction(2))
+
+# A product of factors whose squares are quotients of polynomials is but for its sign the root of its square; the sign is that of its
+# factors, all of which have a value. Others multiply it. In the end a sign is that from some time on: what comes to zero has one.
+def rooted_out(tree, t):
+    even, odd = ([part for part in factors_of(tree) if bool(quotient(squared(part))) == is_one] for is_one in (True, False))
+    decided(even and even + odd != [tree], "is no product with a root")
+    signs = [(Fraction(1 if a >= 0 else -1), Fraction(1 if b > 0 else -1)) for a, b in (enclose(x, LATER if t == END else t) for x in even)]
+    whole = function("sqrt", COMBINED["max"](by_quotient(functools.reduce(times, map(squared, even)), t), (Fraction(0),) * 2))
+    return functools.reduce(multiply, signs + [enclose(part, t) for part in odd], whole)
+
+# What a power of t bounds, and the exponential of a quotient of polynomials: of |p| ≤ c tⁿ and g ≤ −r t, r > 0, the product p exp(g)
+# is at most c tⁿ exp(−r t), which falls from n/r on.
 def damped(tree, t):
-    parts = factors_of(tree)
-    powers, plain = [part[2] for part in parts if part[:2] == ("f", "exp")], [part for part in parts if quotient(part)]
-    decided(powers and plain, "is not damped")
-    whole = functools.reduce(times, plain)
-    n = max(0, len(trimmed(quotient(whole)[0])) - len(trimmed(quotient(whole)[1]))) if quotient(whole) else MOST_DEGREE
-    falls = -enclose(("/", functools.reduce(plus, powers), ("t",)), t)[1]
-    bounded_ = [("/", whole, ("^", ("t",), Fraction(n)))] + [part for part in parts if part not in plain and part[:2] != ("f", "exp")]
-    most = functools.reduce(multiply, [(size(enclose(part, t)),) * 2 for part in bounded_])[1]
-    decided(falls > 0 and not infinite(most), "is not damped")
+    powers, rest = ([part for part in factors_of(tree) if (part[:2] == ("f", "exp")) == is_one] for is_one in (True, False))
+    falls = -enclose(("/", functools.reduce(plus, (part[2] for part in powers)), ("t",)), t)[1] if powers else 0
+    over = (("/", functools.reduce(times, rest, ONE), ("^", ("t",), Fraction(n)) if n else ONE) for n in range(9))
+    found = falls > 0 and next(((n, x) for n, p in enumerate(over) if not infinite(x := size(attempt(rooted_out, p, t) or WHOLE))), None)
+    n, most = decided(found, "is not damped") or found
     if infinite(falls) or t == END: return (Fraction(0),) * 2
     start = max(t[0], n / falls)
     return hull(*(multiply((sign * most,) * 2, multiply((start**n,) * 2, exp_at(-falls * start))) for sign in (-1, 1)))
 
 # The terms of a sum once products are multiplied out, or those with numbers alone, each a number and what it is multiplied with.
+# Quotients of polynomials may stay whole.
 @once
-def weighed(tree, out=True):
+def weighed(tree, out=True, whole=False):
     kind, one = tree[0], (Fraction(1),) * 2
     if not has_variable(tree): return [(enclose(tree, WHOLE), ONE)]
-    if tree[:2] == ("f", "neg"): return [(minus(x), p) for x, p in weighed(tree[2], out)]
-    if kind not in ("+", "-", "*", "/") or not out and kind in "*/" and all(map(has_variable, tree[1:])): return [(one, tree)]
-    a, b = weighed(tree[1], out), [(one, ("^", tree[2], Fraction(-1)))] if kind == "/" and has_variable(tree[2]) else weighed(tree[2], out)
+    if tree[:2] == ("f", "neg"): return [(minus(x), p) for x, p in weighed(tree[2], out, whole)]
+    if kind not in "+-*/" or whole and quotient(tree) or not out and kind in "*/" and all(map(has_variable, tree[1:])): return [(one, tree)]
+    a, b = (weighed(x, out, whole) for x in (tree[1], ("^", tree[2], Fraction(-1)) if kind == "/" and has_variable(tree[2]) else tree[2]))
     if kind in "+-": return a + [(x if kind == "+" else minus(x), q) for x, q in b]
     decided(len(a) * len(b) <= 1000, "a formula has too many terms")
     return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, times(p, q)) for (x, p), (y, q) in itertools.product(a, b)]
@@ -481,8 +493,8 @@ def weighed(tree, out=True):
 # together.
 def swinging(tree, t, out=True):
     found, rest = {}, (Fraction(0),) * 2
-    decided(len(weighed(tree, out)) > 1, "is no sum")
-    for by, part in weighed(tree, out):
+    decided(len(weighed(tree, out, out)) > 1, "is no sum")
+    for by, part in weighed(tree, out, out):
         if part[:2] in (("f", "sin"), ("f", "cos")):
             ratio = quotient(part[2])
             pair_ = found.setdefault(repr([trimmed(of) for of in ratio] if ratio else part[2]), [(Fraction(0),) * 2] * 2)
@@ -498,7 +510,7 @@ def enclose(tree, t):
     if t == FOR_EVER: return hull(enclose(tree, (Fraction(0), Fraction(1))), enclose(tree, LATE))
     plain = not isinstance(t, tuple) or t[1] != INF or t[0] <= 0 or not has_variable(tree)
     if plain or tree[0] in ("t", "points"): return in_one_pass(tree, t)
-    more = (swinging, functools.partial(swinging, out=False), damped) if tree[0] in "+-*/" else ()
+    more = (rooted_out, swinging, functools.partial(swinging, out=False), damped) if tree[0] in "+-*/" else ()
     ways = [found for found in (attempt(way, tree, t) for way in (in_one_pass, by_quotient, *more)) if found]
     decided(ways, "nothing bounds this")
     return max(low for low, _ in ways), min(high for _, high in ways)
@@ -523,13 +535,10 @@ def constant(tree):
 
 # The number that a formula is for all t ≥ 0, where one pass shows it.
 def constant_for_ever(tree):
-    if not has_variable(tree):
-        low, high = enclose(tree, WHOLE)
-        decided(float(low) == float(high), "a constant has too many digits")
-        # What runs is the double next to a number that is not rational.
-        return low if low == high else decimal(repr(float(low)))
-    low, high = attempt(enclose, tree, FOR_EVER) or WHOLE
-    return low if low == high else None
+    low, high = (attempt(enclose, tree, FOR_EVER) or WHOLE) if has_variable(tree) else enclose(tree, WHOLE)
+    decided(has_variable(tree) or float(low) == float(high), "a constant has too many digits")
+    # What runs is the double next to a number that is not rational.
+    return low if low == high else None if has_variable(tree) else decimal(repr(float(low)))
 
 def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
@@ -545,9 +554,8 @@ ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 # Whether a formula has a value, and bounded slopes on bounded sets, in every state; undecided where enclosures do not tell.
 def everywhere(tree):
     broken = tree[0] == "^" and tree[2].denominator > 1
-    partly = broken or tree[:2] in (("f", "log"), ("f", "sqrt"))
     # Above one the slope of a power is bounded at zero.
-    low = enclose(tree[1] if broken else tree[2], WHOLE)[0] if partly else INF
+    low = enclose(tree[1] if broken else tree[2], WHOLE)[0] if broken or tree[:2] in (("f", "log"), ("f", "sqrt")) else INF
     decided(low > 0 or low == 0 and broken and tree[2] > 1, "a root or a logarithm may be of what is not positive")
     return (tree[0] not in ("/", "^") or enclose(tree, WHOLE) is not None) and all(map(everywhere, parts_of(tree)))
 
@@ -1501,11 +1509,11 @@ RULES |= dict.fromkeys(TEXT, by_text)
 # The pieces of time that `range` and `cells` name: [0, ∞), or as many of a period of the formula, of the run, or until a time
 # from which on one more takes all that is left.
 def pieces(node, tree, end_s):
-    kind, unit, length = node.field("range").text(), (Fraction(1),) * 2, end_s
+    kind = node.field("range").text()
     require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
     if kind == "for-ever": return [FOR_EVER]
-    if kind == "period": unit, length = period(tree)
-    if kind == "tail": length = node.field("until_s").number()
+    length = node.field("until_s").number() if kind == "tail" else end_s
+    unit, length = period(tree) if kind == "period" else ((Fraction(1),) * 2, length)
     cells = node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS and length > 0, "must be some, up to a time that is positive")
     return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
@@ -1740,9 +1748,9 @@ def needed(agent, polynomial):
     known_ = {"position_only": 3, "task_space": 2, "attitude": 2, "thrust": 4 if design_of(agent) in ("differentiable", "adaptive") else 3}
     return len(polynomial) - 1 if polynomial else known_.get(agent.law, order)
 
-# For each motion of a claim its axes, and the lowest and the highest derivative that has to be bounded.
-def motions_of(claim):
-    paths = lambda trees: [resolved(tree, FOR_EVER) for tree in trees or []]
+# For each motion of a claim its axes, for ever or in the end, and the lowest and the highest derivative that has to be bounded.
+def motions_of(claim, t=FOR_EVER):
+    paths = lambda trees: [resolved(tree, t) for tree in trees or []]
     if claim.id == "bounded-leader":
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
         return [(paths(claim.scenario.motion), 1, 3)]
@@ -1788,7 +1796,7 @@ def swings(tree):
 # A derivative, or the motion itself of who tracks it, goes beyond every bound as t → ∞.
 @rule("bounded-target bounded-leader", "diverges")
 def diverges(claim, motion, axis, order):
-    motions = motions_of(claim)
+    motions = motions_of(claim, END)
     require(motion, 1 <= motion.count() <= len(motions), "is no motion")
     paths, lowest, most = motions[motion.count() - 1]
     require(axis, 1 <= axis.count() <= len(paths) and paths[axis.count() - 1][0] != "points", "is no axis with a formula")

@@ -736,9 +736,9 @@ class FalseProofs(unittest.TestCase):
             answer="violated", proof={"kind": "limit", "edge": ["mass-1", "mass-2", 1]})
         weight = lambda text: ('"2.5 + sin(t) + 1.5*sin(2*t)"', f'"{text}"')  # noqa: E731
         delay = lambda text: ('"0.2 + 0.1*sin(2*pi*t/3)"', f'"{text}"')  # noqa: E731
-        for text in ("exp(-t)", "1/(1 + t)", "2 - t/(1 + t)*3", "1 + t"):
+        for text in ("exp(-t)", "1/(1 + t)", "2 - t/(1 + t)*3", "1 + t", "sqrt(1 + t)/(1 + t)", "1 - t/sqrt(1 + t^2)", "t/sqrt(1 + t)"):
             self.accepted("formulas", "bounded-weights", ends, weight(text))
-        for text in ("0.5 + exp(-t)", "t/(1 + t)"):
+        for text in ("0.5 + exp(-t)", "t/(1 + t)", "sqrt(2 + (t - 3)^2)/(1 + t)"):
             self.rejected("formulas", "bounded-weights", "stays near", ends, weight(text))
         # A delay may come to zero, and not below.
         self.accepted("formulas", "bounded-delays", ends, delay("2 - t/(1 + t)*3"))
@@ -1498,6 +1498,28 @@ class FalseProofs(unittest.TestCase):
         self.assertNotEqual(checker.enclose(trees[0], (one * 9 / 10, checker.INF)), (0, 0))
         self.assertNotEqual(checker.enclose(trees[0], both), (0, 0))
 
+    def test_leaders_with_roots(self):
+        """√(1 + t + t²), of which α q̇ + q̈ is at most 1.25 at t = 0, and beside it motions of which it is not so, or has no value."""
+        def by(motion, gain="1.3"):
+            return [("motion.sinusoids = [", f'motion.formulas = ["{motion}", "0"]\n#'), ("    { offset = 0.3,", "#"), ("    { offset = -0.2,", "#"),
+                    ("\n]", "\n#"), ("gain = 2 ", f"gain = {gain} ")]
+
+        def ends(low, high, **stretch):
+            zero = {"range": "for-ever", "within": ["0", "0"]}
+            return lambda entry: entry.update(answer="holds", proof={"kind": "bounds", "bounds": [{**stretch, "within": [low, high]}, zero]})
+        derivatives = lambda **stretch: lambda entry: entry.update(answer="holds", proof={"kind": "derivatives", "order": 3, "stretch": stretch})  # noqa: E731
+        tail = {"range": "tail", "until_s": 16, "cells": 128}
+        self.accepted("theorem-8", "sign-gain", ends("-1.29", "1.29", **tail), *by("sqrt(1 + t + t^2)"))
+        self.rejected("theorem-8", "sign-gain", "does not hold", ends("-1.29", "1.1", **tail), *by("sqrt(1 + t + t^2)"))
+        self.rejected("theorem-8", "sign-gain", "does not hold", ends("-1.29", "1.29", **tail), *by("sqrt(1 + t + 3*t^2)"))
+        self.rejected("theorem-8", "sign-gain", "leaves", ends("-1.29", "1.29", **tail), *by("sqrt(1 + t + t^2)", "1.2"))
+        for motion in ("sqrt(1 + t + t^2)", "sqrt(2 + (t - 3)^2)/(1 + t)", "sqrt(1 + t)*cos(sqrt(1 + t))", "sqrt(t^2 - 6*t + 11)"):
+            self.accepted("theorem-8", "bounded-leader", derivatives(**tail), *by(motion))
+        # It grows, swings ever faster, or has a root of what becomes zero, or negative.
+        for motion in ("sqrt(1 + t^3)", "sqrt(1 + t)*cos(t)", "cos(sqrt(1 + t)*t)", "(1 + t)*sqrt(1 + t)", "sqrt(t)", "sqrt(t^2 - 6*t + 9)", "sqrt(9 - t)/(1 + t)"):
+            judged, found = self.judged("theorem-8", "bounded-leader", derivatives(**tail), *by(motion))
+            self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], (motion, found))
+
     def test_motions_that_swing_ever_wider(self):
         name, each, old = "formation", "bounded-target", "0.2*t + cos(0.3*t)"
 
@@ -1516,17 +1538,22 @@ class FalseProofs(unittest.TestCase):
 
         def diverges(motion=1, axis=1, order=0):
             return lambda entry: entry.update(answer="violated", proof={"kind": "diverges", "motion": motion, "axis": axis, "order": order})
-        for target in ("t*(2 + sin(t))", "t^4 - t*sin(t)", "-t", "exp(t) - 1", "t + sin(t*sin(t))", "t*min(sin(t), 0 - 1)"):
+        for target in ("t*(2 + sin(t))", "t^4 - t*sin(t)", "-t", "exp(t) - 1", "t + sin(t*sin(t))", "t*min(sin(t), 0 - 1)",
+                       "abs(t^2 - 3)", "abs(t - 3)*sin(t)", "exp(abs(t - 3))", "max(3, t)"):
             self.accepted(name, each, diverges(), (old, f'"{target}"'))
         # Each of these has a limit, or is zero. In the first the angle stands still, near a multiple of 2 π, wherever cos t > 0.1.
         stands = "(2*pi + t - atan(sin(t)/max(abs(cos(t)), 0.1)))"
         for target in (f"t*max(0, cos(t) - 0.1)*sin({stands}*(1 - exp(-t)))",
-                       "t*sin(exp(-t))", "(pi - pi)*t*sin(t)", "t*abs(sin(2*t) - 2*sin(t)*cos(t))", "t*sin(t)*0"):
+                       "t*sin(exp(-t))", "(pi - pi)*t*sin(t)", "t*abs(sin(2*t) - 2*sin(t)*cos(t))", "t*sin(t)*0",
+                       "abs(t - 3) - t", "min(3, t)", "t - max(3, t)", "sqrt(1 + t)*cos(sqrt(1 + t)) - sqrt(1 + t)*cos(sqrt(1 + t))"):
             judged, found = self.judged(name, each, diverges(), (old, f'"{target}"'))
             self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in judged], (target, found))
         self.assertTrue(checker.swings(checker.formula("1/(1 - cos(t))")), "without a value at first")
         grows = (old, '"t^3"')
         self.accepted(name, each, diverges(order=3), (old, '"t^4"'))
+        # In the end it has no kink: the velocity of |t² − 3| grows, and that of |t − 3| does not.
+        self.accepted(name, each, diverges(order=1), (old, '"abs(t^2 - 3)"'))
+        self.rejected(name, each, "stays bounded", diverges(order=1), (old, '"abs(t - 3)"'))
         for motion, axis, words in ((0, 1, "is no motion"), (2, 1, "is no motion"), (1, 0, "is no axis"), (1, 2, "is no axis")):
             self.rejected(name, each, words, diverges(motion, axis), grows)
         points = "target.points = { times_s = [1, 2], positions = [[0], [1]] }"
@@ -1791,7 +1818,8 @@ class Enclosures(unittest.TestCase):
                                ("exp(-t^2)*sin(t)", True), ("sin(t^2)/(1 + t)", True), ("sin(sqrt(t)) + cos(t)^2", True), ("log(2 + sin(t))", True),
                                ("min(1, abs(t*sin(t)))", False), ("sin(exp(t))", False), ("tanh(t*sin(t))", False), ("sin(t)*sin(t^2)", False),
                                ("tanh(t^2)*sin(t^2)", False), ("abs(sin(t*sin(t)))", False), ("sqrt(1 + t^2)", True), ("sqrt((t + sin(t))^2 + 2)", True),
-                               ("sqrt(1 + (t^2)^2)", False), ("sqrt(1 + t^3)", False), ("sqrt(1 + sqrt(2 + t)^2)", True)):
+                               ("sqrt(1 + t + t^2)", True), ("sqrt(1 + t)*cos(sqrt(1 + t))", True), ("sin(sqrt(2 + (t - 3)^2)*t)", False),
+                               ("sqrt(2 + (t - 3)^2)/(1 + t)", True), ("sqrt(1 + t)*cos(t)", False), ("sqrt(1 + (t^2)^2)", False), ("sqrt(1 + t^3)", False), ("sqrt(1 + sqrt(2 + t)^2)", True)):
             tree = checker.formula(text)
             for start in (checker.LATE, checker.FOR_EVER): self.assertEqual(checker.steady(tree, start), expected, text)
 
@@ -1813,16 +1841,20 @@ class Enclosures(unittest.TestCase):
                                ("t*(2 + sin(t))", (math.inf, math.inf)), ("(t - 3)/(t - 3)", (1, 1)),
                                ("abs(-t)", (math.inf, math.inf)), ("(-t)^3", (-math.inf, -math.inf)), ("t^-2", (0, 0)), ("exp(0 - t)", (0, 0)),
                                ("t*exp(-t)", (0, 0)), ("t^3*exp(-t^2)*sin(t)", (0, 0)), ("t/(1 + abs(1 - t))", (1, 1)),
-                               ("3*sin(t) + 4*cos(t)", (-5, 5))):
+                               ("3*sin(t) + 4*cos(t)", (-5, 5)), ("sqrt(t)*(1/t)", (0, 0)), ("sqrt(2 + (t - 3)^2)/(1 + t)", (1, 1)),
+                               ("-t/sqrt(1 + 4*t^2)", (-0.5, -0.5)), ("(1 - t)*(1 + t^2)^-0.5", (-1, -1)), ("sqrt(1 + t)^-2*t", (1, 1)),
+                               ("sqrt(t)/sqrt(1 + t)*cos(t)", (-1, 1)), ("t/sqrt(1 + t)", (math.inf, math.inf))):
             found = checker.limit(checker.formula(text))
             self.assertEqual([round(float(end), 12) for end in found], [round(end, 12) for end in expected], text)
-        for text in ("sqrt(t) - t", "t*exp(t)*0", "t*sin(t)", "exp(-t)*exp(2*t)", "abs(-1/t)*t", "t*min(0, -1/t)", "exp(t)/t", "log(-t)", "t/(t - t)", "sqrt(t)*(1/t)", "0*exp(t)"):
+        for text in ("sqrt(t) - t", "t*exp(t)*0", "t*sin(t)", "exp(-t)*exp(2*t)", "abs(-1/t)*t", "t*min(0, -1/t)", "exp(t)/t", "log(-t)", "t/(t - t)", "0*exp(t)",
+                     "sqrt(1 - t)/t", "sqrt(1 - t)*sqrt(1 - t)/t^2", "sqrt(t)*sin(t)", "log(t)*sqrt(t)/t"):
             self.assertRaises(checker.Undecided, checker.limit, checker.formula(text))
 
     def test_what_is_found_from_a_time_on_holds_samples(self):
         """Of drawn formulas: from 1 s on, in the limit, and on pieces from the middle on by the slope."""
         draw, bounded = random.Random(11), 0
-        leaves = ("t", "sin(t)", "cos(t)", "sin(2*t)", "exp(-t)", "exp(-t^2/4)", "1/(1 + t^2)", "(1 - t)", "2", "0.3", "t^2")
+        leaves = ("t", "sin(t)", "cos(t)", "sin(2*t)", "exp(-t)", "exp(-t^2/4)", "1/(1 + t^2)", "(1 - t)", "2", "0.3", "t^2", "sqrt(1 + t)",
+                  "sqrt(2 - t + t^2)", "(1 + t)^-0.5")
 
         def drawn(depth):
             if depth == 0 or draw.random() < 0.15: return draw.choice(leaves)
@@ -1847,6 +1879,37 @@ class Enclosures(unittest.TestCase):
             for t in [3 + k / 80 for k in range(21)] if straight else ():
                 self.assertTrue(straight[0] - room(value(t)) <= value(t) <= straight[1] + room(value(t)), f"{text} at {t}")
         self.assertGreater(bounded, 60)
+
+    def test_roots_are_bounded_by_their_squares(self):
+        """From a time on; with the sign where the factors have one, and no value where one of them has none."""
+        sixteen, one = (checker.Fraction(16), checker.INF), checker.LATE
+        for text, t, expected in (("sqrt(t^2 + 3)/t", one, (1, 2)), ("-sqrt(t^2 + 3)/t", one, (-2, -1)), ("t/sqrt(t^2 + 3)", one, (0.5, 1)),
+                                  ("(t^2 + 3)^-0.5*t", one, (0.5, 1)), ("sqrt(t^2 + 3)^-2*t^2", one, (0.25, 1)), ("1/sqrt(t)", sixteen, (0, 0.25)),
+                                  ("sqrt(t^2 + 3)/t*cos(t)", one, (-2, 2)), ("(1 - 2*t)/sqrt(t^2 + 3)", one, (-2, -0.5)),
+                                  ("sqrt(t)*exp(-t)", one, (-1 / math.e, 1 / math.e)), ("(1 + t)^1.5/t^2", one, (0, math.sqrt(8)))):
+            low, high = map(float, checker.enclose(checker.formula(text), t))
+            exact = low >= expected[0] - 1e-9 and high <= expected[1] + 1e-9 and min(abs(low - expected[0]), abs(high - expected[1])) < 1e-9
+            self.assertTrue(exact, (text, low, high))
+        # A square is not below zero, whatever encloses it, and polynomials that belong together stay so when sums are multiplied out.
+        for text in ("sqrt(2 + (t - 3)^2)/(1 + t)", "((t - t^2/(1 + t))*sin(t) + sqrt(1 + t))/sqrt(1 + t)"):
+            self.assertLess(checker.enclose(checker.formula(text), one)[1], 4, text)
+        # (t − 2)/√(t² + 3) is negative at first, and √(t − 5) has no value there: neither has its square, though (t − 5) is taken twice.
+        self.assertLessEqual(checker.enclose(checker.formula("(t - 2)/sqrt(t^2 + 3)"), one)[0], -0.5)
+        for text in ("sqrt(t - 5)/t", "sqrt(t - 5)*sqrt(t - 5)/t", "(t - 5)^0.5/t", "1/sqrt(t - 20)", "t/sqrt(t - 20)^2", "sqrt(t - 20)/(t - 20)"):
+            self.assertRaises(checker.Undecided, checker.enclose, checker.formula(text), sixteen if "20" in text else one)
+        for text in ("sqrt(1 + t)*sin(t)", "sqrt(1 + t^3)/t", "t^1.5/(1 + t)"):
+            self.assertTrue(checker.infinite(checker.enclose(checker.formula(text), one)[1]), text)
+
+    def test_quotients_of_polynomials_keep_within_what_they_take(self):
+        """A polynomial in 1/t by its coefficients of Bernstein: 1 − u + u² stays positive from 1 s on."""
+        self.assertEqual(checker.by_quotient(checker.formula("(t^2 - t + 1)/t^2"), checker.LATE), (checker.Fraction(1, 2), 1))
+        draw = random.Random(5)
+        for _ in range(200):
+            p, end = [checker.Fraction(draw.randint(-9, 9), draw.randint(1, 4)) for _ in range(draw.randint(1, 7))], checker.Fraction(draw.randint(0, 6), 3)
+            low, high = checker.held(p, end)
+            values = [sum(c * (end * k / 40) ** n for n, c in enumerate(p)) for k in range(41)]
+            self.assertTrue(low <= min(values) and max(values) <= high, (p, end))
+            self.assertTrue({values[0], values[-1]} <= {low, high} or len(p) > 2, (p, end))
 
     def test_quotients_keep_their_poles(self):
         for text in ("1/(1/(t - 20))", "(1/(t - 20))^-1", "0*(1/(t - 20)) + 1", "(1/(t - 20))^0", "2 + (1/(t - 20))^0"):

@@ -1,7 +1,8 @@
 //! Verdicts about links: packets, random holds, formulas.
 
 use crate::common::{edge, masses};
-use forwardstep_check::{Answer, NoPrediction, NotFixed, check, predict};
+use forwardstep_check::hypothesis::{LinkEvidence, WeightFault};
+use forwardstep_check::{Answer, Evidence, Id, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
@@ -34,6 +35,22 @@ fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(A
     };
     let (answer, because) = find("delays").unwrap();
     (answer, because, find("weights"))
+}
+
+/// The time at which a weight is more than twice what it is on the run.
+#[test]
+fn a_weight_that_grows_is_told_with_a_time_after_the_run() {
+    let mut setup =
+        masses(Exchange::Position, 2, Schedule::fixed(vec![edge(0, 1, 1.0, 0)]), vec![Delay::constant(0.1)]);
+    setup.network.weights = vec![BoundedFormula::new(Expression::variable(0) + 1.0, 20.0)];
+    setup.network.schedule = Schedule::fixed(vec![Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 0) }]);
+    let found = check(&setup).hypotheses.into_iter().find(|h| h.id == Id::BoundedWeights).unwrap();
+    let Evidence::Links(LinkEvidence::RefutedWeight { fault: WeightFault::Grows, witness: Some(witness) }) =
+        found.evidence
+    else {
+        panic!("{:?}", found.evidence)
+    };
+    assert!(witness.t_s > 41.0 && witness.value > 42.0, "{witness:?}");
 }
 
 #[test]

@@ -419,4 +419,8 @@ fn an_arm_that_its_motors_cannot_hold_is_told() {
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![1e3, 0.5]);
     let load = practical(&setup).findings.swap_remove(1);
     assert!(load.answer().words() == "inadequate" && load.because().contains(" of 0.5 (arm-"), "{load:?}");
+    // And where both limit one axis, the tighter of them.
+    setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![3.0, 1e3]);
+    let load = practical(&setup).findings.swap_remove(1);
+    assert!(load.because().contains(" of 3 (arm-2, shoulder)"), "{load:?}");
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
 use crate::common::{About, answer, answers, edge, masses};
-use forwardstep_check::hypothesis::GraphEvidence;
+use forwardstep_check::hypothesis::{GraphEvidence, KindEvidence};
 use forwardstep_check::{
     Answer, Evidence, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
 };
@@ -27,7 +27,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
-    Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, VelocitySensor,
+    Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, ThrustLaw, VelocitySensor,
 };
 
 /// Two masses that hear each other through delays of their own.
@@ -334,6 +334,19 @@ fn the_adaptation_of_those_that_follow_targets_of_their_own_is_not_in_the_margin
     );
 }
 
+/// Y is that of the start with its velocities, which adaptation makes of them what it does.
+#[test]
+fn the_margin_at_the_start_is_that_of_an_arm_that_moves() {
+    let margin = |dq: [f64; 2]| {
+        let mut setup = alone(crate::common::arm(0, &[1.0, 2.0]));
+        setup.agents[0].start.dq = dq.to_vec();
+        setup.control = control(0.0);
+        SamplingMargin::of(&setup).unwrap().start
+    };
+    let [rests, moves] = [[0.0; 2], [3.0, -2.0]].map(margin);
+    assert!(rests.damping_sigma == moves.damping_sigma && moves.sigma > 1.001 * rests.sigma, "{rests:?} {moves:?}");
+}
+
 #[test]
 fn vehicles_are_told_apart_from_rotorcraft() {
     let design = ThrustKind::Differentiable { alpha_star: 3.0, stiffness: 4.0 };
@@ -348,6 +361,20 @@ fn vehicles_are_told_apart_from_rotorcraft() {
     };
     assert_eq!(answer(&craft(None), About::AngularVelocity), Answer::NotCovered);
     assert_eq!(answers(&check(&craft(None)), About::Rotors), []);
+    // The slowest body is named, whichever comes first.
+    for order in [[30.0, 4.0], [4.0, 30.0]] {
+        let mut two = craft(None);
+        let flying = two.agents[0].clone();
+        two.agents.push(flying);
+        two.network.agents = 2;
+        for (agent, bandwidth_per_s) in two.agents.iter_mut().zip(order) {
+            agent.name = format!("craft-{bandwidth_per_s}");
+            assert!(agent.change_law(|law: &mut ThrustLaw| law.bandwidth_per_s = bandwidth_per_s));
+        }
+        let found = check(&two).hypotheses.into_iter().find(|h| h.id == Id::AngularVelocity).unwrap();
+        let Evidence::Kind(KindEvidence::AngularRate { agent, bandwidth_per_s, .. }) = found.evidence else { panic!() };
+        assert_eq!((agent.name.as_str(), bandwidth_per_s), ("craft-4", 4.0));
+    }
     // Of several floors the lowest is named.
     let mut two = plain.clone();
     two.agents.push(vehicle(design, Floor::Stops(0.5)));

@@ -124,10 +124,15 @@ fn largest(delay: &Delay) -> BigRational {
     }
 }
 
+/// Numbers with as many digits may be those of constants that are not rational.
+const SHORT: usize = 12;
+/// More than what rounding does to such a constant, s, or as a part of it: others compute it to other last digits.
+const ROOM: f64 = 1e-12;
+
 /// A number as it is written; of so many digits that it is that of a constant which is not rational, one that is not below.
 fn above_rounded(value: f64) -> BigRational {
     let digits = format!("{value:e}").bytes().take_while(|byte| *byte != b'e').filter(u8::is_ascii_digit).count();
-    if digits < 16 { Number::written(value) } else { above(value.next_up()) }
+    if digits < SHORT { Number::written(value) } else { above(value * (1.0 + ROOM) + ROOM) }
 }
 
 /// (lost + 1) · period + latency + jitter.

@@ -1,6 +1,6 @@
 //! What a formula keeps within from some time on, in one pass and by the rules that a checker has.
 
-use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Step, Unary};
+use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Intervals, Number, Unary};
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive};
 
@@ -13,6 +13,8 @@ pub(super) struct Late {
     pub(super) within: Interval,
     /// Itself, where it is a quotient of polynomials.
     pub(super) ratio: Option<Ratio>,
+    /// Its square, where it is a root of one, or a power of such a root.
+    square: Option<Ratio>,
     /// Itself once products are multiplied out: the sum of these.
     terms: Vec<Damped>,
     /// Sines and cosines of one angle each, by what they are multiplied with; and what the rest keeps within.
@@ -21,17 +23,23 @@ pub(super) struct Late {
     constant: bool,
 }
 
-/// A product: a quotient of polynomials, the exponential of one, and what keeps within bounds.
+/// A product: a quotient of polynomials, roots of such, the exponential of one, and what keeps within bounds.
 #[derive(Clone, Debug)]
 struct Damped {
     over: Option<Ratio>,
+    /// The square of all roots.
+    root: Option<Ratio>,
+    /// The sign of quotients and roots, by what a checker knows: that of each of them.
+    sign: Interval,
     power: Option<Ratio>,
     rest: Interval,
 }
 
 /// What `formula` does from `from_s` on.
 pub(super) fn late(formula: &Expression, from_s: f64) -> Late {
-    formula.fold(&mut Lates { from_s })
+    let found = formula.fold(&mut Lates { from_s });
+    let within = if found.within.low <= found.within.high { found.within } else { Interval::WHOLE };
+    Late { within, ..found }
 }
 
 /// The algebra of what formulas do from a time on.
@@ -40,7 +48,7 @@ struct Lates {
 }
 
 /// Terms of a sum that are kept apart.
-const MOST_TERMS: usize = 32;
+const MOST_TERMS: usize = 64;
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
 const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
 
@@ -49,15 +57,25 @@ impl Lates {
     fn part(&self, within: Interval, ratio: Option<Ratio>) -> Late {
         let known = ratio.as_ref().filter(|_| self.from_s > 0.0).and_then(|ratio| ratio.from(self.from_s));
         let within = both(within, known);
-        let plain = Damped { over: None, power: None, rest: within };
-        let term = ratio.clone().map_or(plain, |over| Damped { over: Some(over), power: None, rest: ONE });
-        Late { within, ratio, terms: vec![term], waves: Vec::new(), rest: within, constant: false }
+        let term = match &ratio {
+            Some(over) => Damped { over: Some(over.clone()), sign: sign_of(within), ..Damped::bounded(ONE) },
+            None => Damped::bounded(within),
+        };
+        Late { within, ratio, square: None, terms: vec![term], waves: Vec::new(), rest: within, constant: false }
     }
 
-    /// The same by the sum of `terms`, of which exponentials that fall make more than their ends tell.
+    /// What has this square, a quotient of polynomials, and a value throughout.
+    fn rooted(&self, part: Late, square: Option<Ratio>) -> Late {
+        let Some(root) = square.filter(|_| part.ratio.is_none() && part.within.low.is_finite()) else { return part };
+        let known = Damped { root: Some(root.clone()), sign: sign_of(part.within), ..Damped::bounded(ONE) };
+        let within = both(part.within, known.within(self.from_s));
+        Late { within, rest: within, square: Some(root), terms: vec![known], ..part }
+    }
+
+    /// The same by the sum of `terms`, of which exponentials that fall, and roots, make more than their ends tell.
     fn multiplied_out(&self, part: Late, terms: Option<Vec<Damped>>) -> Late {
         let Some(terms) = terms.filter(|terms| part.ratio.is_none() && terms.len() <= MOST_TERMS) else { return part };
-        if terms.iter().all(|term| term.power.is_none()) {
+        if terms.iter().all(|term| term.power.is_none() && term.root.is_none()) {
             return Late { terms, ..part };
         }
         let sum = terms.iter().try_fold(ZERO, |sum, term| Some(sum + term.within(self.from_s)?));
@@ -88,7 +106,7 @@ impl Lates {
         }
         let size = |[sine, cosine]: &[Interval; 2]| {
             of(
-                Step::Unary(Unary::Sqrt),
+                Unary::Sqrt,
                 Interval::point(sine.size()) * Interval::point(sine.size())
                     + Interval::point(cosine.size()) * Interval::point(cosine.size()),
             )
@@ -111,6 +129,10 @@ impl Lates {
 }
 
 impl Damped {
+    fn bounded(rest: Interval) -> Damped {
+        Damped { over: None, root: None, sign: ONE, power: None, rest }
+    }
+
     /// |p| ≤ c tⁿ and g ≤ −r t make p exp(g) at most c tⁿ exp(−r t), which falls from n/r on.
     fn within(&self, from_s: f64) -> Option<Interval> {
         if from_s == 0.0 {
@@ -118,13 +140,13 @@ impl Damped {
         }
         let rest = self.rest.size();
         let Some(power) = &self.power else {
-            return Some(self.over.as_ref().map_or(Some(ONE), |over| over.from(from_s))? * self.rest);
+            return Some(self.factor(from_s)? * self.rest);
         };
         let falls = -power.times(&Ratio::time().inverse()?)?.from(from_s)?.high;
-        let number = Ratio::number(BigRational::one());
-        let over = self.over.as_ref().unwrap_or(&number);
-        let n = over.degree().max(0);
-        let most = over.times(&Ratio::time().power(-i64::from(n))?)?.from(from_s)?.size();
+        let square = self.square()?;
+        // n is half of the degree of the square, rounded up.
+        let n = (square.degree().max(0) + 1) / 2;
+        let most = square.times(&Ratio::time().power(-i64::from(2 * n))?)?.from(from_s)?.size().sqrt().next_up();
         if !(falls > 0.0 && falls.is_finite() && most.is_finite() && rest.is_finite()) {
             return None;
         }
@@ -133,6 +155,26 @@ impl Damped {
         // What is too small for a number is not zero.
         let size = size.max(f64::MIN_POSITIVE);
         Some(Interval { low: -size, high: size })
+    }
+
+    /// What quotients and roots keep within together: but for its sign it is the root of their square, which is a quotient itself.
+    /// Roots by themselves are ∞/∞ beside what they are divided by.
+    fn factor(&self, from_s: f64) -> Option<Interval> {
+        match (&self.over, &self.root) {
+            (None, None) => Some(ONE),
+            (Some(over), None) => over.from(from_s),
+            (_, Some(_)) => {
+                let square = self.square()?.from(from_s)?;
+                Some(self.sign * of(Unary::Sqrt, Interval { low: square.low.max(0.0), ..square }))
+            }
+        }
+    }
+
+    /// The square of quotients and roots.
+    fn square(&self) -> Option<Ratio> {
+        let one = Ratio::number(BigRational::one());
+        let over = self.over.as_ref().unwrap_or(&one);
+        over.times(over)?.times(self.root.as_ref().unwrap_or(&one))
     }
 
     fn scaled(&self, by: Interval) -> Damped {
@@ -144,8 +186,13 @@ impl Damped {
             (Some(a), Some(b)) => f(a, b).map(Some),
             (one, other) => Some(one.clone().or_else(|| other.clone())),
         };
-        let over = joined(&self.over, &other.over, Ratio::times)?;
-        Some(Damped { over, power: joined(&self.power, &other.power, Ratio::plus)?, rest: self.rest * other.rest })
+        Some(Damped {
+            over: joined(&self.over, &other.over, Ratio::times)?,
+            root: joined(&self.root, &other.root, Ratio::times)?,
+            sign: self.sign * other.sign,
+            power: joined(&self.power, &other.power, Ratio::plus)?,
+            rest: self.rest * other.rest,
+        })
     }
 }
 
@@ -154,13 +201,23 @@ fn both(a: Interval, b: Option<Interval>) -> Interval {
     b.map_or(a, |b| Interval { low: b.low.max(a.low), high: b.high.min(a.high) })
 }
 
-/// What a function makes of an interval.
-pub(super) fn of(step: Step, a: Interval) -> Interval {
-    Expression::new(vec![Step::Variable(0), step]).map_or(Interval::WHOLE, |function| function.enclose(a))
+/// The sign of what keeps within an interval, between −1 and 1.
+fn sign_of(within: Interval) -> Interval {
+    match (within.low >= 0.0, within.high <= 0.0) {
+        (true, false) => ONE,
+        (false, true) => -ONE,
+        (true, true) | (false, false) => Interval { low: -1.0, high: 1.0 },
+    }
 }
 
-fn smaller(a: Interval, b: Interval) -> Interval {
-    Interval { low: a.low.min(b.low), high: a.high.min(b.high) }
+/// What a function makes of an interval; not-a-number, which absorbs, where it may have no value.
+pub(super) fn of(function: Unary, a: Interval) -> Interval {
+    Intervals(&[]).unary(function, a)
+}
+
+/// The same of a power.
+pub(super) fn to_power(a: Interval, exponent: &Number) -> Interval {
+    Intervals(&[]).power(a, exponent)
 }
 
 impl Algebra for Lates {
@@ -177,7 +234,7 @@ impl Algebra for Lates {
     }
 
     fn unary(&mut self, function: Unary, a: Late) -> Late {
-        let within = of(Step::Unary(function), a.within);
+        let within = of(function, a.within);
         let negated = || a.ratio.as_ref().map(Ratio::negated);
         let ratio = match function {
             Unary::Negate => negated(),
@@ -193,8 +250,9 @@ impl Algebra for Lates {
                 Lates::scaled(self.multiplied_out(part, Some(terms)), &a, -ONE)
             }
             (Unary::Exp, Some(power)) => {
-                Late { terms: vec![Damped { over: None, power: Some(power.clone()), rest: ONE }], ..part }
+                Late { terms: vec![Damped { power: Some(power.clone()), ..Damped::bounded(ONE) }], ..part }
             }
+            (Unary::Sqrt, Some(square)) if a.within.low >= 0.0 => self.rooted(part, Some(square.clone())),
             (Unary::Sin, Some(angle)) => Late { waves: vec![(angle.clone(), [ONE, ZERO])], rest: ZERO, ..part },
             (Unary::Cos, Some(angle)) => Late { waves: vec![(angle.clone(), [ZERO, ONE])], rest: ZERO, ..part },
             _ => part,
@@ -217,14 +275,16 @@ impl Algebra for Lates {
                 }
             }
             Binary::Divide => {
-                let over = b.ratio.as_ref().and_then(Ratio::inverse);
-                let rest = if over.is_some() { ONE } else { ONE / y };
-                let divisor = [Damped { over, power: None, rest }];
+                let [over, root] = [&b.ratio, &b.square].map(|known| known.as_ref().and_then(Ratio::inverse));
+                let divisor = match over.is_some() || root.is_some() {
+                    true => [Damped { over, root, sign: sign_of(y), ..Damped::bounded(ONE) }],
+                    false => [Damped::bounded(ONE / y)],
+                };
                 let part = self.product(x / y, ratios.and_then(|(a, b)| a.times(&b.inverse()?)), [&a.terms, &divisor]);
                 if b.constant { Lates::scaled(part, &a, ONE / y) } else { part }
             }
             Binary::Min | Binary::Max => {
-                let within = if function == Binary::Min { smaller(x, y) } else { -smaller(-x, -y) };
+                let within = Intervals(&[]).binary(function, x, y);
                 let apart = self.sum(x - y, ratios.and_then(|(a, b)| a.plus(&b.negated())), [&a, &b], -ONE).within;
                 let first = match function {
                     Binary::Min => (apart.high <= 0.0).then_some(true).or((apart.low >= 0.0).then_some(false)),
@@ -238,10 +298,23 @@ impl Algebra for Lates {
     }
 
     fn power(&mut self, a: Late, exponent: &Number) -> Late {
-        let within = of(Step::Power(exponent.clone()), a.within);
+        let within = to_power(a.within, exponent);
         let part = self.part(within, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?)));
-        Late { constant: a.constant, ..part }
+        // A root by another name, or a power of one.
+        let square = match (&a.ratio, &a.square) {
+            (Some(ratio), _) if a.within.low >= 0.0 => twice(exponent).and_then(|exponent| ratio.power(exponent)),
+            (None, Some(square)) => whole(exponent).and_then(|exponent| square.power(exponent)),
+            _ => None,
+        };
+        let found = if a.constant { part } else { self.rooted(part, square) };
+        Late { constant: a.constant, ..found }
     }
+}
+
+/// Twice an exponent, where that is a whole number.
+pub(super) fn twice(exponent: &Number) -> Option<i64> {
+    let doubled = exponent.exact()? * BigRational::from_integer(2.into());
+    if doubled.is_integer() { doubled.to_i64() } else { None }
 }
 
 /// An exponent that is a whole number.
@@ -296,8 +369,31 @@ mod tests {
         // What is a quotient of polynomials is kept whole: t − t²/(1 + t) is at most one.
         let bounded = t() - t().power(2.0) / (t() + 1.0);
         assert!(is_sharp(&(bounded * t().sin_of()), [-1.0, 1.0]));
-        // Without an exponential there is nothing to gain, and with one that grows nothing is known.
+        // Without an exponential or a root there is nothing to gain, and with one that grows nothing is known.
         assert!(within(&((t() * t().sin_of() + t().cos_of()) * 2.0))[1].is_infinite());
         assert!(within(&((t() * t().sin_of() + t().cos_of()) * t().exp_of()))[1].is_infinite());
+    }
+
+    /// Each factor by itself is unbounded, or comes to zero.
+    #[test]
+    fn roots_are_weighed_against_what_they_are_divided_by_and_keep_their_sign() {
+        let root = |c: f64| (t().power(2.0) + c).sqrt_of();
+        // √(t² + 3)/t falls from 2 to 1, as does its square from 4.
+        assert!(is_sharp(&(root(3.0) / t()), [1.0, 2.0]) && is_sharp(&-(root(3.0) / t()), [-2.0, -1.0]));
+        assert!(is_sharp(&(t() / root(3.0)), [0.5, 1.0]) && is_sharp(&((t() - t() * 2.0) / root(3.0)), [-1.0, -0.5]));
+        assert!(is_sharp(&(root(3.0).power(-2.0) * t().power(2.0)), [0.25, 1.0]));
+        assert!(is_sharp(&((t().power(2.0) + 3.0).power(-0.5) * t()), [0.5, 1.0]));
+        // Beside what swings the size counts, and an exponential overcomes a root: √t e^−t is at most 1/e from 1 s on.
+        assert!(is_sharp(&(root(3.0) / t() * t().cos_of()), [-2.0, 2.0]));
+        let e = core::f64::consts::E;
+        let fall = within(&(t().sqrt_of() * (-t()).exp_of()));
+        assert!(fall[1] >= 1.0 / e && fall[1] < 1.0 / e + 1e-9, "{fall:?}");
+        // What is nowhere decided has either sign: t − 2 is negative at first.
+        assert!(within(&((t() - 2.0) / root(3.0)))[0] < 0.0);
+        // What has no value at first is not bounded, whatever is made of it, and what grows is not bounded.
+        for formula in [(t() - 5.0).sqrt_of() / t(), (t() - 5.0).sqrt_of().sin_of(), t() / (t() - 5.0).sqrt_of()] {
+            assert_eq!(within(&formula), [f64::NEG_INFINITY, f64::INFINITY], "{formula:?}");
+        }
+        assert!(within(&(root(3.0) * t().sin_of()))[1].is_infinite());
     }
 }

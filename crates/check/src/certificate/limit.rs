@@ -1,8 +1,8 @@
 //! Where a formula goes as t → ∞, by the rules that a checker has: what refutes a bound for ever.
 
-use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Step, Unary};
+use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Unary};
 
-use super::late::{of, whole};
+use super::late::{of, to_power, twice, whole};
 use super::ratio::Ratio;
 
 /// Where a formula goes.
@@ -28,6 +28,8 @@ pub(super) fn limit(formula: &Expression) -> Limit {
 struct Part {
     limit: Limit,
     ratio: Option<Ratio>,
+    /// Its square where that is a quotient of polynomials, as of a root of one, and whether it is positive in the end.
+    square: Option<(Ratio, bool)>,
     /// Whether it falls as the exponential of a polynomial does, faster than any power grows.
     fast: bool,
 }
@@ -41,7 +43,19 @@ impl Part {
             Some(Err(false)) => Limit::Down,
             None => limit,
         };
-        Part { limit: known, ratio, fast: false }
+        let square = ratio.as_ref().and_then(|ratio| Some((ratio.power(2)?, ratio.is_positive_late()?)));
+        Part { limit: known, ratio, square, fast: false }
+    }
+
+    /// The same of what has this square: where ∞/∞ stands for a root, its square may tell.
+    fn rooted(self, square: Option<(Ratio, bool)>) -> Part {
+        let Some((square, positive)) = square.filter(|_| self.ratio.is_none()) else { return self };
+        let size = match square.limit() {
+            Some(Ok(within)) => Limit::near(of(Unary::Sqrt, Interval { low: within.low.max(0.0), ..within })),
+            Some(Err(_)) => Limit::Up,
+            None => return self,
+        };
+        Part { limit: if positive { size } else { size.negated() }, square: Some((square, positive)), ..self }
     }
 
     /// What falls so fast times what is a quotient of polynomials, or has a limit, falls as fast.
@@ -153,7 +167,7 @@ impl Algebra for Limits {
             }
         };
         let limit = match a.limit {
-            Limit::Near(within) => Limit::near(of(Step::Unary(function), within)),
+            Limit::Near(within) => Limit::near(of(function, within)),
             Limit::Up => at_infinity(true),
             Limit::Down => at_infinity(false),
             Limit::Unknown => Limit::Unknown,
@@ -165,7 +179,13 @@ impl Algebra for Limits {
             _ => None,
         };
         let falls = function == Unary::Exp && a.ratio.is_some() && a.limit == Limit::Down;
-        Part { fast: falls || (function == Unary::Negate && a.fast), ..Part::new(limit, ratio) }
+        let square = match function {
+            // Not below zero, or it has no value: then its own limit is not known.
+            Unary::Sqrt if limit != Limit::Unknown => a.ratio.clone().map(|ratio| (ratio, true)),
+            Unary::Negate => a.square.clone().map(|(square, positive)| (square, !positive)),
+            _ => None,
+        };
+        Part { fast: falls || (function == Unary::Negate && a.fast), ..Part::new(limit, ratio).rooted(square) }
     }
 
     fn binary(&mut self, function: Binary, a: Part, b: Part) -> Part {
@@ -177,13 +197,16 @@ impl Algebra for Limits {
             Binary::Add | Binary::Subtract | Binary::Min | Binary::Max => false,
         };
         if fast {
-            return Part { limit: Limit::Near(Interval::point(0.0)), ratio: None, fast };
+            return Part { limit: Limit::Near(Interval::point(0.0)), ratio: None, square: None, fast };
         }
+        let squares = a.square.as_ref().zip(b.square.as_ref());
         match function {
             Binary::Add => Part::new(x.plus(y), ratios.and_then(|(a, b)| a.plus(b))),
             Binary::Subtract => Part::new(x.plus(y.negated()), ratios.and_then(|(a, b)| a.plus(&b.negated()))),
-            Binary::Multiply => Part::new(x.times(y), ratios.and_then(|(a, b)| a.times(b))),
-            Binary::Divide => Part::new(x.times(y.inverse()), ratios.and_then(|(a, b)| a.times(&b.inverse()?))),
+            Binary::Multiply => Part::new(x.times(y), ratios.and_then(|(a, b)| a.times(b)))
+                .rooted(squares.and_then(|((a, up), (b, rises))| Some((a.times(b)?, up == rises)))),
+            Binary::Divide => Part::new(x.times(y.inverse()), ratios.and_then(|(a, b)| a.times(&b.inverse()?)))
+                .rooted(squares.and_then(|((a, up), (b, rises))| Some((a.times(&b.inverse()?)?, up == rises)))),
             Binary::Min => Part::new(x.smaller(y), None),
             Binary::Max => Part::new(x.negated().smaller(y.negated()).negated(), None),
         }
@@ -191,12 +214,18 @@ impl Algebra for Limits {
 
     fn power(&mut self, a: Part, exponent: &Number) -> Part {
         let limit = match a.limit {
-            Limit::Near(within) => Limit::near(of(Step::Power(exponent.clone()), within)),
+            Limit::Near(within) => Limit::near(to_power(within, exponent)),
             Limit::Up if exponent.within().low > 0.0 => Limit::Up,
             Limit::Up if exponent.within().high < 0.0 => Limit::Near(Interval::point(0.0)),
             Limit::Up | Limit::Down | Limit::Unknown => Limit::Unknown,
         };
-        Part::new(limit, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?)))
+        let square = match &a.ratio {
+            Some(ratio) if limit != Limit::Unknown => {
+                twice(exponent).and_then(|exponent| Some((ratio.power(exponent)?, true)))
+            }
+            _ => None,
+        };
+        Part::new(limit, a.ratio.as_ref().and_then(|ratio| ratio.power(whole(exponent)?))).rooted(square)
     }
 }
 
@@ -220,6 +249,23 @@ mod tests {
             let unknown = Limit::Unknown;
             [Limit::Down, unknown, unknown, unknown, Limit::Up]
         });
+    }
+
+    /// √(t² + 1)/t → 1 and √t/t → 0, where each part by itself grows.
+    #[test]
+    fn roots_are_compared_with_what_they_are_divided_by_by_their_squares() {
+        let near = |formula: Expression, expected: f64| match limit(&formula) {
+            Limit::Near(within) => (within.low - expected).abs() < 1e-9 && (within.high - expected).abs() < 1e-9,
+            Limit::Up | Limit::Down | Limit::Unknown => false,
+        };
+        let root = || (t().power(2.0) + 1.0).sqrt_of();
+        assert!(near(root() / t(), 1.0) && near(-root() / t(), -1.0) && near(root() / -t(), -1.0));
+        assert!(near(-t() / root(), -1.0) && near(root() * (t() * -2.0).power(-1.0), -0.5));
+        assert!(near(t().power(0.5) / t(), 0.0) && near(t().power(-0.5) * t().sqrt_of(), 1.0));
+        assert_eq!([limit(&(t() / t().sqrt_of())), limit(&(-t() / t().sqrt_of()))], [Limit::Up, Limit::Down]);
+        // A root of what becomes negative has no value, whatever it is divided by.
+        assert_eq!(limit(&((-t()).sqrt_of() / t())), Limit::Unknown);
+        assert_eq!(limit(&((-t()).power(0.5) / t())), Limit::Unknown);
     }
 
     #[test]

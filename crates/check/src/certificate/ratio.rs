@@ -8,7 +8,7 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 /// Polynomials have at most this degree.
-const MOST_DEGREE: usize = 16;
+const MOST_DEGREE: usize = 24;
 /// Powers are multiplied out up to this one.
 const MOST_POWER: i64 = 8;
 
@@ -45,6 +45,27 @@ fn trimmed(mut a: Vec<BigRational>) -> Vec<BigRational> {
         a.pop();
     }
     a
+}
+
+/// What a polynomial, by coefficients from the highest power on, keeps within from 0 to an end: its Bernstein coefficients there,
+/// bⱼ = Σₖ C(j, k)/C(n, k) cₖ endᵏ.
+fn bernstein(falling: &[BigRational], end: f64) -> Interval {
+    let Some(end) = BigRational::from_float(end) else { return Interval::WHOLE };
+    let n = falling.len().saturating_sub(1);
+    // cₖ endᵏ/C(n, k), of which b₀ is the first; each difference scheme adds the neighbour once: that is C(j, k).
+    let (mut row, mut power, mut choices) = (Vec::new(), BigRational::one(), BigRational::one());
+    for (k, c) in falling.iter().rev().enumerate() {
+        row.push(c * &power / &choices);
+        power *= &end;
+        choices = choices * BigRational::from_integer((n - k).into()) / BigRational::from_integer((k + 1).into());
+    }
+    let mut found: Option<Interval> = None;
+    while let Some(first) = row.first() {
+        let within = Number::rational(first.clone()).within();
+        found = Some(found.map_or(within, |found| found.hull(within)));
+        row = row.windows(2).map(|pair| &pair[0] + &pair[1]).collect();
+    }
+    found.unwrap_or(Interval::point(0.0))
 }
 
 impl Ratio {
@@ -99,13 +120,18 @@ impl Ratio {
         let (lead, below) = (self.over.last(), self.under.last()?);
         Some(match lead {
             Some(lead) if self.over.len() > self.under.len() => Err((lead / below).is_positive()),
-            Some(_) | None => Ok(self.at(Interval::point(0.0))),
+            Some(_) | None => Ok(self.at(0.0)),
         })
+    }
+
+    /// Whether it is positive, and not negative, from some time on; `None` where it is zero, or has no value.
+    pub(super) fn is_positive_late(&self) -> Option<bool> {
+        Some((self.over.last()? / self.under.last()?).is_positive())
     }
 
     /// What it keeps within from `from_s` > 0 on, where that is known.
     pub(super) fn from(&self, from_s: f64) -> Option<Interval> {
-        let found = self.at(Interval { low: 0.0, high: (1.0 / from_s).next_up() });
+        let found = self.at((1.0 / from_s).next_up());
         let degree = self.degree();
         if degree <= 0 || !found.is_finite() {
             return Some(found).filter(|found| found.is_finite());
@@ -119,14 +145,11 @@ impl Ratio {
         self.over.len() as i32 - self.under.len() as i32
     }
 
-    /// For 1/t within an interval, divided by t to the degree where that is positive.
-    fn at(&self, u: Interval) -> Interval {
-        let value = |coefficients: &[BigRational]| {
-            let all = coefficients.iter().map(|c| Number::rational(c.clone()).within());
-            all.fold(Interval::point(0.0), |value, coefficient| value * u + coefficient)
-        };
+    /// For 1/t from 0 to an end, divided by t to the degree where that is positive.
+    fn at(&self, end: f64) -> Interval {
+        let u = Interval { low: 0.0, high: end };
         let fall = (0..-self.degree()).fold(Interval::point(1.0), |power, _| power * u);
-        value(&self.over) * fall / value(&self.under)
+        bernstein(&self.over, end) * fall / bernstein(&self.under, end)
     }
 }
 

@@ -49,7 +49,7 @@ impl AgreementBound {
         }
         let gains = ReferenceGains::of(setup);
         let axes = match (&gains, power) {
-            (Ok(gains), Some(power)) if power.agents == setup.agents.len() => axes(setup, gains, power),
+            (Ok(gains), Some(power)) => axes(setup, gains, power),
             (Ok(_) | Err(_), Some(_) | None) => None,
         };
         let sensors = setup.control.as_ref().map(|control| &control.sensors);
@@ -93,6 +93,7 @@ fn axes(setup: &Setup, gains: &ReferenceGains, power: &PowerBound) -> Option<[Ax
     let first = setup.agents.first()?;
     let mut largest = vec![0.0_f64; first.robot.axes.len()];
     for agent in &setup.agents {
+        // Of what is no robot under (6)–(7) `power` says nothing.
         let compliance = Gains::of(agent)?.damping.cholesky()?.inverse();
         if compliance.nrows() != largest.len() {
             return None;

@@ -52,7 +52,7 @@ fn agent(
             kind,
             theta_names: vec![String::new(); theta.len()],
             theta,
-            axes: (0..axes).map(|k| Axis { unit, ..axis(["x", "y", "z", "o"][k]) }).collect(),
+            axes: (0..axes).map(|k| Axis { unit, ..axis(["x", "y", "z", "o"][k % 4]) }).collect(),
         },
         roots_per_s: Vec::new().into(),
         manipulability: 0.0,
@@ -141,9 +141,9 @@ fn task_space(tip: TipSetup, kinematic_start: &[f64], parameters: usize) -> Arc<
     })
 }
 
-/// Three joints, each `kinds[k]` along `axes[k]`; a joint is (0.3, 0.2, 0.5) m behind the one before, a tool (0.4, 0, 0.1) m behind
-/// the last.
-pub fn tree_tip(kinds: [JointKind; 3], axes: [[f64; 3]; 3], uncertain: Uncertain) -> AgentSetup {
+/// Joints, each `kinds[k]` along `axes[k]`; a joint is (0.3, 0.2, 0.5) m behind the one before, a tool (0.4, 0, 0.1) m behind
+/// the last. Of a chain that is uncertain there are three.
+pub fn tree_tip<const N: usize>(kinds: [JointKind; N], axes: [[f64; 3]; N], uncertain: Uncertain) -> AgentSetup {
     let place = Placement { translation: [0.3, 0.2, 0.5], ..Placement::IDENTITY };
     let link = |k: usize| LinkSpec {
         parent: k.checked_sub(1),
@@ -151,16 +151,17 @@ pub fn tree_tip(kinds: [JointKind; 3], axes: [[f64; 3]; 3], uncertain: Uncertain
         joint: LinkJoint::Moving { kind: kinds[k], axis: axes[k], damping: 0.0 },
         inertia: [3.0, 0.5, 0.0, 0.0, 0.02, 0.0, 0.5, 0.0, 0.0, 0.5],
     };
-    let assembled = Tree::assemble(&[link(0), link(1), link(2)], [0.0, 0.0, -9.81]).unwrap();
-    let point = LinkPoint { link: assembled.anchors[2], at: [0.4, 0.0, 0.1] };
+    let assembled = Tree::assemble(&std::array::from_fn::<_, N, _>(link), [0.0, 0.0, -9.81]).unwrap();
+    let point = LinkPoint { link: assembled.anchors[N - 1], at: [0.4, 0.0, 0.1] };
     let tip = TipSetup::Point { point, coordinates: vec![0, 1, 2], follows: Follows::Position, uncertain };
     let mut theta = vec![0.4, 0.0, 0.1];
     if uncertain == Uncertain::Chain {
         theta = [[0.3, 0.2, 0.5], [0.3, 0.2, 0.5], [0.4, 0.0, 0.1]].concat();
     }
     let law = task_space(tip, &theta.iter().map(|length| 1.2 * length).collect::<Vec<_>>(), assembled.theta.len());
-    let start = start(&[0.3, -0.8, 1.5], &[0.0; 3], &[]);
-    agent(Arc::new(Arc::new(assembled.tree)), assembled.theta, law, start, 3, AxisUnit::Radian)
+    let bent: [f64; N] = std::array::from_fn(|k| [0.3, -0.8, 1.5][k % 3]);
+    let start = start(&bent, &[0.0; N], &[]);
+    agent(Arc::new(Arc::new(assembled.tree)), assembled.theta, law, start, N, AxisUnit::Radian)
 }
 
 /// Changes the law of an agent that has one for a tip.

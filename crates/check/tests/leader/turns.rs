@@ -61,6 +61,11 @@ fn prop_what_is_left_for_delays_has_no_number_where_none_is_known() {
     varies.network.weights = vec![BoundedFormula::new(Expression::variable(0).sin_of() * 0.1 + 1.0, 20.0)];
     varies.network.schedule.graphs[0][0].weight = Weight::Formula(0);
     assert_eq!(answer(&said(&varies), "weights are constant").0, Answer::NotCovered);
+    // A delay of which more is not known than what it is on the run.
+    let mut swings = setup(FollowingDesign::Continuous, wave(), 3.0);
+    let faster = Expression::variable(0).power(2.0).sin_of() * 0.05 + 0.1;
+    swings.network.delays[0] = Delay::new(BoundedFormula::new(faster, 20.0));
+    assert_ne!(said(&swings).worst(), Answer::Holds);
     // A leader that is an agent, and one that is never heard.
     let mut led = led_by_agent(FollowingDesign::Continuous, wave());
     led.network.delays[0] = Delay::constant(0.1);

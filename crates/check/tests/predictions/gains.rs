@@ -5,17 +5,18 @@ use std::sync::Arc;
 
 use forwardstep_check::{AgreementBound, Finding, NoReferenceGains, Over, PracticalAnswer, ReferenceGains, practical};
 use forwardstep_core::Gain;
+use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::{Backstepping, PureIntegral};
-use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::{Control, Exchange, Known, Method, Setup, Signal, Solver};
 
 use super::two_arms;
-use crate::common::kinds::blind_mass;
+use crate::common::kinds::{blind_mass, chain};
 use crate::common::{arm, column, edge, run, setup};
 
 fn ring(agents: usize, order: usize, exchange: Exchange, delay_s: f64) -> Setup {
@@ -251,6 +252,40 @@ fn thm_no_run_that_starts_in_agreement_disagrees_more_than_its_bound() {
     }
 }
 
+/// Nothing is known of how large s of a chain is, which is no robot under (6)-(7).
+#[test]
+fn how_large_s_is_is_said_only_where_it_is_known_of_all() {
+    let mut mass = arm(0, &[1.0, 2.0]);
+    mass.robot.kind = Arc::new(PointMass { dimension: 1 });
+    (mass.robot.theta, mass.robot.theta_names) = (vec![2.0], vec!["mass".into()]);
+    mass.robot.axes.truncate(1);
+    mass.start.q.truncate(1);
+    mass.start.dq.truncate(1);
+    mass.law = Arc::new(Known { damping: Gain::Number(5.0) });
+    let effect = Effect::Torque(Course::Each(vec![super::sine(1.0, 2.0)]));
+    mass.pushes = vec![Push { effect, from_s: 0.0, until_s: 9.0 }];
+    let of = |other| {
+        let edges = vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)];
+        let delays = vec![Delay::constant(0.1)];
+        bound(&setup(vec![mass.clone(), other], Exchange::Position, Schedule::fixed(edges), delays, 20.0)).unwrap()
+    };
+    let alike = of(mass.clone());
+    assert!(alike.gains.is_ok() && alike.axes.is_some(), "{alike:?}");
+    let mixed = of(chain(&Expression::number(1.0), 0, false));
+    assert!(mixed.gains.is_ok() && mixed.axes.is_none(), "{mixed:?}");
+}
+
+/// A log tells one graph up to its end, and not for ever.
+#[test]
+fn a_log_of_one_graph_is_no_fixed_graph() {
+    let mut setup = ring(3, 2, Exchange::Position, 0.1);
+    let edges = setup.network.schedule.graphs[0].clone();
+    assert_eq!(ReferenceGains::of(&setup).unwrap().over, Over::Fixed);
+    setup.network.schedule =
+        Schedule::logged(vec![edges], Logged { starts_s: vec![0.0], graphs: vec![0], until_s: 30.0 });
+    assert_eq!(ReferenceGains::of(&setup).unwrap().over, Over::Horizon(30.0));
+}
+
 #[test]
 fn what_s_adds_is_said_with_its_numbers() {
     let mut setup = two_arms();
@@ -293,6 +328,7 @@ fn what_s_adds_is_said_with_its_numbers() {
     let mut three = ring(3, 1, Exchange::Position, 0.0);
     three.agents[1].pushes = setup.agents[1].pushes.clone();
     assert!(bound(&three).unwrap().axes.is_some());
+    three.agents[0].pushes = setup.agents[1].pushes.clone();
     three.agents.truncate(1);
     assert_eq!(bound(&three), None, "one alone agrees");
     let text = said(&setup.clone().sampled(500.0)).unwrap().1;

@@ -121,9 +121,13 @@ fn eq_what_v_can_add_to_a_torque_counts_those_alone_who_are_heard_in_the_graph_t
     for peak in predicted(&setup).peak_torques.iter().filter(|peak| peak.agent == 1) {
         assert!((peak.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{peak:?} {expected}");
     }
-    let velocities_unheard = Setup { exchange: Exchange::Position, ..setup };
-    let expected = 5.0 * s(3.0, 1.5) + 3.0 * (2.0 + 2.0) * s(3.0, 1.5);
-    let peaks = predicted(&velocities_unheard).peak_torques;
-    let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
-    assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
+    let mut velocities_unheard = Setup { exchange: Exchange::Position, ..setup };
+    // λ adds to what ż has of s, whatever its sign.
+    for lambda in [0.0, 0.7] {
+        velocities_unheard.agents[1].manipulability = lambda;
+        let expected = 5.0 * s(3.0, 1.5) + 3.0 * (2.0 + 2.0 + lambda) * s(3.0, 1.5);
+        let peaks = predicted(&velocities_unheard).peak_torques;
+        let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
+        assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
+    }
 }

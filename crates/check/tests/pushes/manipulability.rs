@@ -7,6 +7,7 @@ use forwardstep_check::manipulability::{LowFrequency, Manipulability, Measured, 
 use forwardstep_check::prediction::NoRate;
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
+use forwardstep_core::reference::{RootPair, RootSet};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::{Consensus, PureIntegral, ReferenceDynamics};
 use forwardstep_sim::{Adaptive, Control, Exchange, Known, Sensors, Setup, Signal, Start};
@@ -211,6 +212,16 @@ fn networks_without_such_a_transfer_say_why() {
         });
     });
     assert_eq!(sampled, NoManipulability::Sampled);
+    // Roots −0.1 ± 2 i let the disagreement of these agents grow, and no push then leaves what it displaced; −1 ± 0.2 i do not.
+    let pair = |real: f64, imaginary: f64| {
+        let mut setup = fine.clone();
+        let roots = RootSet { real: Vec::new(), pairs: vec![RootPair { real, imaginary }] };
+        setup.agents.iter_mut().for_each(|agent| (agent.roots_per_s, agent.manipulability) = (roots.clone(), 0.0));
+        Manipulability::of(&setup, 0, 0)
+    };
+    let grows = pair(0.1, 2.0);
+    assert!(matches!(grows, Err(NoManipulability::Network(NoRate::Grows { .. }))), "{grows:?}");
+    assert!(pair(1.0, 0.2).is_ok());
 }
 
 #[test]

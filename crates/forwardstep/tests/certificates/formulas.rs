@@ -90,8 +90,49 @@ fn constants_that_are_not_rational_are_certified() {
         accepted(&weighed(weight), "spanning-tree", "holds");
         accepted(&weighed(weight), "agreement", "holds");
     }
-    for delay in ["cos(0.3)", "sqrt(2)/10", "exp(-1)"] {
+    for delay in ["cos(0.3)", "sqrt(2)/10", "exp(-1)", "0.1 + 0.1*sin((sqrt(2)*sqrt(2))^2)"] {
         accepted(&delayed(delay), "bounded-delays", "holds");
+    }
+}
+
+/// Roots of quotients of polynomials are bounded by their squares, however they are written and whatever they are divided by.
+#[test]
+fn leaders_delays_and_weights_with_roots_are_certified_and_refuted() {
+    for (motion, gain) in [
+        ("sqrt(1 + t + t^2)", "1.3"),
+        ("sqrt(t^2 - 6*t + 11)", "3"),
+        ("sqrt(2 + (t - 3)^2)/(1 + t)", "9"),
+        ("sqrt(1 + t)*cos(sqrt(1 + t))", "3"),
+        ("t/(1 + t + t^2)^0.5", "3"),
+        ("sqrt(2 + t)*exp(-t)", "9"),
+        ("sqrt((1 + t)/(2 + t))", "2"),
+    ] {
+        let text = led(&format!("formulas = [\"{motion}\"]"), gain);
+        accepted(&text, "bounded-leader", "holds");
+        accepted(&text, "sign-gain", "holds");
+    }
+    for weight in ["sqrt(2 + (t - 3)^2)/(1 + t)", "1 + t/sqrt(1 + t^2)", "1 + sqrt(1 + t)/(2 + t)"] {
+        accepted(&weighed(weight), "bounded-weights", "holds");
+    }
+    for weight in ["sqrt(1 + t)/(1 + t)", "t/sqrt(1 + t) + 1"] {
+        accepted(&weighed(weight), "bounded-weights", "violated");
+    }
+    for (delay, answer) in [
+        ("sqrt(2 + (t - 3)^2)/(1 + t)", "holds"),
+        ("0.2 + 0.1*sin(sqrt(1 + t + t^2))", "holds"),
+        ("0.1 + sqrt(1 + t)/(2 + t)*sin(t)^2", "holds"),
+        ("2 - t/sqrt(1 + t^2)", "holds"),
+        ("t/sqrt(1 + t)", "violated"),
+    ] {
+        accepted(&delayed(delay), "bounded-delays", answer);
+    }
+}
+
+/// Beyond its last kink it has derivatives, of which one grows.
+#[test]
+fn leaders_that_grow_beyond_a_kink_are_refuted() {
+    for motion in ["abs(t^2 - 3)", "abs(t - 3)*sin(t)", "abs(t - 3)^2", "exp(abs(t/9 - 3))", "max(t^2, 3)"] {
+        accepted(&led(&format!("formulas = [\"{motion}\"]"), "9"), "bounded-leader", "violated");
     }
 }
 
@@ -164,7 +205,21 @@ impl Draws {
 
     fn formula(&mut self, depth: usize) -> String {
         if depth == 0 {
-            let leaf = self.of(&["t", "0.5", "2", "1", "sin(t)", "exp(-t)", "t/20", "cos(3*t)", "0.1", "sqrt(2)"]);
+            let leaf = self.of(&[
+                "t",
+                "0.5",
+                "2",
+                "1",
+                "sin(t)",
+                "exp(-t)",
+                "t/20",
+                "cos(3*t)",
+                "0.1",
+                "sqrt(2)",
+                "sqrt(1 + t)",
+                "(t^2 - t + 1)^0.5",
+                "sqrt(2 + t)^-1",
+            ]);
             return leaf.to_owned();
         }
         let a = self.formula(depth - 1);
@@ -215,7 +270,8 @@ fn claims_without_a_proof_are_named() {
         (bare.join(", "), line.map(|line| line.split(';').next().unwrap().to_owned()))
     };
     assert_eq!(said("sin(t)"), (String::new(), None));
-    let (bare, named) = said("sqrt(1 + t + t^2)");
+    assert_eq!(said("sqrt(1 + t + t^2)"), (String::new(), None));
+    let (bare, named) = said("log(2 + t)/(1 + t)");
     assert!(!bare.is_empty());
     assert_eq!(named, Some(bare));
 }
