@@ -630,14 +630,13 @@ def period(tree):
 
 # --- The scenario, read from its text
 
-LAGRANGIAN = ("planar_arm", "point_mass", "ship", "urdf")
+LAGRANGIAN, ARMS, MASS = ("planar_arm", "point_mass", "ship", "urdf"), ("planar_arm", "urdf"), ("point_mass",)
 # Each law, the robots that it is made for, and the keys of its gains. What is not written is positive by default.
 LAWS = {
     "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
-    "position_only": (("point_mass",), "damping filter_per_s adaptation_gain"),
+    "position_only": (MASS, "damping filter_per_s adaptation_gain"), "model_reference": (MASS, "filter_per_s adaptation_gain"),
     "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
-    "task_space": (("planar_arm", "urdf"),
-                   "damping adaptation_gain task_gain kinematic_gain torque_share reference_gain_per_s attitude_gain"),
+    "task_space": (ARMS, "damping adaptation_gain task_gain kinematic_gain torque_share reference_gain_per_s attitude_gain"),
     "attitude": (("spacecraft",), "error_gain_per_s2 rate_gain_per_s filter_gain_per_s damping"),
     "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"),
     "linearising": (("chain", "vector_chain"), "gain_per_s"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
@@ -647,6 +646,7 @@ MADE_FOR, GAINS = ({law: of[k] for law, of in LAWS.items()} for k in (0, 1))
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
+ALONE = ("position_only", "model_reference", *(ROOTLESS := ("task_space", "attitude", "passivity_filter")))
 CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping"), ("continuous", "observer")
 LED = {"differentiable": "theorem-9", "without_acceleration": "remark-12", "swarm": "swarm", "observer": "leader-observer"}
 
@@ -998,8 +998,8 @@ def read(path):
 def design_of(agent): return choice(agent.gains.get("design", "differentiable"), "design")[0]
 
 def treated(agent):
-    kinds, usual = {each: each.replace("_", " ") for each in ("position_only", "task_space", "attitude", "passivity_filter")}, "lagrangian"
-    return f"thrust {design_of(agent)}" if agent.law == "thrust" else kinds.get(agent.law, "chain" if agent.law in CHAIN_LAWS else usual)
+    if agent.law == "thrust": return f"thrust {design_of(agent)}"
+    return agent.law.replace("_", " ") if agent.law in ALONE else "chain" if agent.law in CHAIN_LAWS else "lagrangian"
 
 # Of tips with more than a position, or with more joints than coordinates.
 def extension(agent):
@@ -1015,7 +1015,7 @@ def theorem(scenario):
     named = {"thrust continuous": "continuous-thrust", "thrust differentiable": "theorem-4", "thrust adaptive": "theorem-5",
              "thrust by_acceleration": "thrust-by-acceleration", "attitude": "theorem-7", "passivity filter": "passivity-filter",
              "task space": tip, "chain": "chains-track" if tracking else "chains-agree",
-             "position only": "position-only-tracks" if tracking else "remark-7"}
+             "position only": "position-only-tracks" if tracking else "remark-7", "model reference": "model-reference"}
     if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
     velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
     if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
@@ -1071,7 +1071,7 @@ def still(agent): return all(attempt(constant_for_ever, derivative(tree)) == 0 f
 
 # Who follows a target by roots.
 def rooted(scenario):
-    return [a for a in scenario.agents if a.tracks and treated(a) in ("lagrangian", "chain", "position only") and not scenario.polynomial]
+    return [a for a in scenario.agents if a.tracks and a.law not in ROOTLESS and not scenario.polynomial]
 
 # Whether measurements have noise, steps, or come from a filter.
 def inexact(control):
@@ -1716,7 +1716,7 @@ def definite(node, rows, stated):
     require(stated, len(found) == len(rows) and min(found) > 0, "are not all positive")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
-    f"{law.replace('_', '-')}-gains": (law,) for law in ("task_space", "attitude", "position_only", "thrust", "passivity_filter")}
+    f"{law.replace('_', '-')}-gains": (law,) for law in (*ALONE, "thrust")}
 
 # Numbers are positive, matrices are by their pivots; a mass that is not adapted is the true one.
 @rule(" ".join(ASKED_OF), "definite")
@@ -1732,7 +1732,7 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
     if kind == "bandwidth_per_s" and key == "damping" and agent.robot == "urdf":
         # The scales of K are the diagonal of M(q₀); those of Γ are positive by how they are made.
         require(claim.proof, solid(claim.scenario, agent), f"{agent.name} may have a joint without inertia")
-    if value == 0 and key == "adaptation_gain" and agent.law in ("position_only", "thrust"):
+    if value == 0 and key == "adaptation_gain" and agent.law in ("position_only", "model_reference", "thrust"):
         true = agent.settings().get("estimate_start_kg") == agent.body.get("mass_kg") and "parameter_variation" not in agent.entry
         require(claim.proof, true, f"{agent.name} keeps a wrong mass")
     elif isinstance(value, list) and value and isinstance(value[0], list):

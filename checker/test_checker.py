@@ -809,6 +809,12 @@ class FalseProofs(unittest.TestCase):
         true = (("adaptation_gain = 8 ", "adaptation_gain = 0 "), ("estimate_start_kg = 0", "estimate_start_kg = 2"))
         self.accepted("without-velocity", "position-only-gains", lambda entry: None, *true)
         self.rejected("without-velocity", "position-only-gains", "wrong mass", lambda entry: None, true[0])
+        name, each, known = "model-reference", "model-reference-gains", "adaptation_gain = 0\nestimate_start_kg = 2"
+        for gain in ("filter_per_s = 20", "adaptation_gain = 8"):
+            self.rejected(name, each, "is not positive", lambda entry: None, (gain, gain.split(" =")[0] + " = -1"))
+        self.accepted(name, each, lambda entry: None, ("adaptation_gain = 8", known))
+        self.rejected(name, each, "wrong mass", lambda entry: None, ("adaptation_gain = 8", known.replace("2", "1")))
+        self.rejected(name, each, "wrong mass", lambda entry: None, ("adaptation_gain = 8", "adaptation_gain = 0"))
         self.rejected("swarm-tracking", "swarm-coupling", "are not", lambda entry: None, ("coupling = 12", "coupling = 11"))
         at_zero = ("roots_per_s = [1.0, 1.0]", "roots_per_s = [0.0, 2.0]")
         self.rejected("swarm-tracking", "swarm-coupling", "is for real roots", lambda entry: None, at_zero)
