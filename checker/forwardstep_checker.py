@@ -646,7 +646,7 @@ MADE_FOR, GAINS = ({law: of[k] for law, of in LAWS.items()} for k in (0, 1))
 # The first of those that are made for a robot.
 USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot in robots}
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
-ALONE = ("position_only", "model_reference", *(ROOTLESS := ("task_space", "attitude", "passivity_filter")))
+BLIND, ROOTLESS = ("position_only", "model_reference"), ("task_space", "attitude", "passivity_filter")
 CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping"), ("continuous", "observer")
 LED = {"differentiable": "theorem-9", "without_acceleration": "remark-12", "swarm": "swarm", "observer": "leader-observer"}
 
@@ -999,7 +999,7 @@ def design_of(agent): return choice(agent.gains.get("design", "differentiable"),
 
 def treated(agent):
     if agent.law == "thrust": return f"thrust {design_of(agent)}"
-    return agent.law.replace("_", " ") if agent.law in ALONE else "chain" if agent.law in CHAIN_LAWS else "lagrangian"
+    return agent.law.replace("_", " ") if agent.law in BLIND + ROOTLESS else "chain" if agent.law in CHAIN_LAWS else "lagrangian"
 
 # Of tips with more than a position, or with more joints than coordinates.
 def extension(agent):
@@ -1716,7 +1716,7 @@ def definite(node, rows, stated):
     require(stated, len(found) == len(rows) and min(found) > 0, "are not all positive")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
-    f"{law.replace('_', '-')}-gains": (law,) for law in (*ALONE, "thrust")}
+    f"{law.replace('_', '-')}-gains": (law,) for law in (*BLIND, *ROOTLESS, "thrust")}
 
 # Numbers are positive, matrices are by their pivots; a mass that is not adapted is the true one.
 @rule(" ".join(ASKED_OF), "definite")
@@ -1732,7 +1732,7 @@ def gain_is_positive(claim, agent, key, value, matrices, stated):
     if kind == "bandwidth_per_s" and key == "damping" and agent.robot == "urdf":
         # The scales of K are the diagonal of M(q₀); those of Γ are positive by how they are made.
         require(claim.proof, solid(claim.scenario, agent), f"{agent.name} may have a joint without inertia")
-    if value == 0 and key == "adaptation_gain" and agent.law in ("position_only", "model_reference", "thrust"):
+    if value == 0 and key == "adaptation_gain" and agent.law in (*BLIND, "thrust"):
         true = agent.settings().get("estimate_start_kg") == agent.body.get("mass_kg") and "parameter_variation" not in agent.entry
         require(claim.proof, true, f"{agent.name} keeps a wrong mass")
     elif isinstance(value, list) and value and isinstance(value[0], list):
