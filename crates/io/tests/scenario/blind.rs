@@ -1,5 +1,7 @@
 //! A mass without velocity: every mistake in a scenario, where it is reported and what is said.
 
+use forwardstep_sim::ModelReferenceLaw;
+
 use super::{Case, refused};
 
 /// Two masses whose velocities nobody measures.
@@ -84,4 +86,55 @@ const BLIND_CASES: &[Case] = &[
 #[test]
 fn mistakes_about_masses_without_velocity_are_reported_at_their_place() {
     refused(BLIND, BLIND_CASES);
+}
+
+/// A mass whose velocity nobody measures behind a target, by a model.
+pub(super) const BY_MODEL: &str = r#"format = 2
+time = { end_s = 10 }
+
+[[agents]]
+name = "mass"
+robot.point_mass = { dimension = 1, mass_kg = 2.0 }
+target.formulas = ["sin(t)"]
+
+[reference.tracking]
+roots_per_s = [1.0, 1.5]
+
+[law.model_reference]
+filter_per_s = 15
+adaptation_gain = 5
+estimate_start_kg = 1
+"#;
+
+#[rustfmt::skip]
+const MODEL_CASES: &[Case] = &[
+    ("[law.model_reference]", "[law.model_refrence]",
+        "test.toml:12:6: unknown choice `model_refrence`", "did you mean `model_reference`?"),
+    ("filter_per_s = 15", "filter_per_s = 0",
+        "test.toml:13:16: `filter_per_s` is 0, but must be positive", ""),
+    ("filter_per_s = 15", "damping = 15",
+        "test.toml:13:1: unknown key `damping`", "allowed here: `filter_per_s`, `adaptation_gain`, `estimate_start_kg`"),
+    ("adaptation_gain = 5", "adaptation_gain = -5",
+        "test.toml:14:19: `adaptation_gain` is -5, but must not be negative", ""),
+    ("estimate_start_kg = 1", "estimate_start_kg = nan",
+        "test.toml:15:21: nan is not a finite number", ""),
+    ("[1.0, 1.5]", "[1.0, 1.5, 2.0]",
+        "test.toml:10:15: agent `mass`: the list of roots has 3 entries where 2 are needed", "give it 2 roots"),
+    ("mass_kg = 2.0 }", "mass_kg = 2.0, damping = 1 }",
+        "test.toml:12:2: agent `mass`: the law `model_reference` is made for point masses without damping and friction, of which it knows no velocity to compensate them at", "for this robot there is `adaptive` and `known`"),
+    ("target.formulas = [\"sin(t)\"]\n\n[reference.tracking]", "\n[network]\nedges = []\n[reference.consensus]\nexchange = \"position\"",
+        "test.toml:10:2: agent `mass`: the law by a model follows a target of its own; it does not agree with others", "write `reference.tracking`"),
+];
+
+#[test]
+fn mistakes_about_masses_by_a_model_are_reported_at_their_place() {
+    refused(BY_MODEL, MODEL_CASES);
+}
+
+#[test]
+fn what_is_not_written_of_a_law_by_a_model_is_as_its_keys_say() {
+    let law = |text: &str| *super::read(text).unwrap().setup.agents[0].law.downcast::<ModelReferenceLaw>().unwrap();
+    assert_eq!(law(BY_MODEL), ModelReferenceLaw { filter_per_s: 15.0, adaptation: 5.0, estimate_start: 1.0 });
+    let bare = BY_MODEL.split("filter_per_s").next().unwrap();
+    assert_eq!(law(bare), ModelReferenceLaw { filter_per_s: 10.0, adaptation: 10.0, estimate_start: 0.0 });
 }

@@ -9,6 +9,7 @@ use serde_json::Value;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::blind::BY_MODEL;
 use super::chains::{CASCADES, DERIVATIVES};
 use super::mutated::texts;
 use super::read;
@@ -104,7 +105,7 @@ fn rest() -> Vec<String> {
     let by_acceleration = "design.by_acceleration = { damping_per_s = 3, adaptation_gain = 0.2, estimate_start_kg = 1.2, bias_m_s2 = [0, 0, 0.1] }";
     let rest = rest.replace("design.differentiable = { damping_per_s = 3, stiffness = 4 }", by_acceleration);
     all.push(format!("{vehicles}[reference.consensus]{}", rest.replace("[1.0, 1.5, 2.0]", "[1.0, 1.5]")));
-    all.extend([ARMS, FOLLOWERS].map(str::to_owned));
+    all.extend([ARMS, FOLLOWERS, BY_MODEL].map(str::to_owned));
     all
 }
 

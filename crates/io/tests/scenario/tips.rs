@@ -179,7 +179,7 @@ const PLANAR_CASES: &[Case] = &[
     ("lower_m = [0.9, 0.7], ", "",
         "test.toml:14:10: the key `lower_m` is missing", ""),
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.point_mass = { dimension = 2, mass_kg = 1 }\nstart.position_m",
-        "test.toml:12:2: agent `arm`: the law `task_space` is made for planar arms and robots from a URDF", "for this robot there is `adaptive`, `known` and `position_only`"),
+        "test.toml:12:2: agent `arm`: the law `task_space` is made for planar arms and robots from a URDF", "for this robot there is `adaptive`, `known`, `position_only` and `model_reference`"),
     ("robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\nstart.position_rad", "robot.urdf = { file = \"ur5e.urdf\" }\nstart.position_rad",
         "test.toml:12:2: the law `task_space` needs `end_effector` for a robot from a URDF", "add end_effector = { link = \"…\" } with a link of the URDF"),
     ("[law.task_space]\nkinematic_gain = [0.3, 0.2]\nbounds = { lower_m = [0.9, 0.7], upper_m = [1.1, 0.9] }", "[law.adaptive]",
