@@ -52,6 +52,23 @@ fn every_shipped_scenario_is_explained_or_says_why_not() {
     }
 }
 
+/// The cases beside the checker have laws and bounds that no shipped scenario has. Text stands behind a `%`.
+#[test]
+fn regress_every_letter_of_every_case_has_a_command_in_latex() {
+    let folder = folder();
+    let cases = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../checker/cases")).unwrap();
+    let cases: Vec<_> =
+        cases.map(|entry| entry.unwrap().path()).filter(|path| path.extension().unwrap() == "toml").collect();
+    assert!(cases.len() > 10, "{cases:?}");
+    for case in cases {
+        let latex = stdout(&forwardstep(&folder, &["explain", case.to_str().unwrap(), "--latex"]).success());
+        let formulas: Vec<&str> = latex.lines().filter(|line| !line.starts_with('%')).collect();
+        assert!(formulas.iter().any(|line| line.contains("equation")), "{case:?}: {latex}");
+        let wrong = formulas.iter().find(|line| !line.is_ascii());
+        assert!(wrong.is_none(), "{case:?}: {wrong:?}");
+    }
+}
+
 #[test]
 fn eq_43_a_target_is_explained_as_a_target_and_an_offset_as_an_offset() {
     let folder = folder();

@@ -81,9 +81,11 @@ fn command(base: &str) -> String {
     for letter in base.chars() {
         let command = match letter {
             'α' => "\\alpha",
+            'β' => "\\beta",
             'γ' => "\\gamma",
             'Γ' => "\\Gamma",
             'Π' => "\\Pi",
+            'δ' => "\\delta",
             'ε' => "\\varepsilon",
             'Δ' => "\\Delta ",
             'ζ' => "\\zeta",
@@ -93,7 +95,10 @@ fn command(base: &str) -> String {
             'κ' => "\\kappa",
             'λ' => "\\lambda",
             'Λ' => "\\Lambda",
+            'μ' => "\\mu",
             'ξ' => "\\xi",
+            'ρ' => "\\rho",
+            'σ' => "\\sigma",
             'ς' => "\\varsigma",
             'τ' => "\\tau",
             'φ' => "\\varphi",
