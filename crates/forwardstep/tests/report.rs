@@ -491,3 +491,15 @@ fn a_folder_that_is_closed_to_us_is_an_error() {
         assert!(error.contains("trajectory.parquet`: permission denied") && error.contains("readable"), "{error}");
     }
 }
+
+#[test]
+fn a_page_speaks_of_a_reference_velocity_where_there_is_one() {
+    let folder = folder();
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/../../checker/cases/model-reference.toml");
+    for (scenario, has_one) in [("without-velocity", true), (case, false)] {
+        forwardstep(&folder, &["run", scenario, "--out", "run", "--force"]).success();
+        let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+        assert_eq!(page.contains("q̇, and z dashed"), has_one, "{scenario}");
+        assert!(page.contains("data-plot=\"velocity\""), "{scenario}");
+    }
+}

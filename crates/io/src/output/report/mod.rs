@@ -171,7 +171,11 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
                 @if recorded(Signal::External) {
                     (card("external", pushed, "τ_ext, by pushes", ""))
                 }
-                (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
+                @if recorded(Signal::Reference(0)) {
+                    (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
+                } @else {
+                    (card("velocity", "Speed", "q̇", ""))
+                }
                 (card("plane", "One over another", "paths and phase planes", ""))
                 @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
                 (card("reference", "Reference derivatives", "ż and higher", ""))
