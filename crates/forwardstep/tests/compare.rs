@@ -304,3 +304,25 @@ fn regress_names_of_files_stay_in_their_lines() {
     let page = fs::read_to_string(here.path().join("both/compare.html")).unwrap();
     assert!(!page.contains(['\u{1b}', '\u{202e}']));
 }
+
+/// What Remark 5 goes beyond: relative positions behind filters, p (p + 1)(p + 2) x = −w (x − x_j). By Routh's array the difference of two decays for
+/// w < 3 alone, and by (24) for every weight.
+#[test]
+fn own_positions_behind_a_filter_agree_up_to_the_weight_of_routh_and_by_eq_24_beyond_it() {
+    let here = folder();
+    let left = |coupling: &str, weight: f64| {
+        let text = format!(
+            "format = 2\ntime.end_s = 1000\n[[agents]]\nname = \"agent\"\ncount = 2\n\
+             robot.chain = {{ order = 2, chi = \"-x^3\", psi = \"2 + cos(x)\" }}\nstart.position = [[1.0], [-0.5]]\n\
+             [reference.desired]\npolynomial = {{ integrators = 1, roots_per_s = [1, 2] }}\ncoupling_polynomial = {coupling}\n\
+             [law.linearising]\ngain_per_s = 2\n[network]\nweight = {weight}\nedges.ring = {{}}\n"
+        );
+        write(&here, "pair.toml", &text);
+        forwardstep(&here, &["run", "pair.toml", "--out", "run", "--force"]).success();
+        let gap = summary(&here.path().join("run"))["metrics"]["disagreement"]["measured"].clone();
+        gap["last"].as_f64().unwrap() / gap["initial"].as_f64().unwrap()
+    };
+    // The roots nearest to the axis have the real parts −0.00918 and 0.00900 1/s.
+    assert!(left("[1]", 2.9) < 1e-3 && left("[1]", 3.1) > 1e3);
+    assert!(left("{ roots_per_s = [1, 2] }", 31.0) < 1e-9);
+}
