@@ -63,7 +63,7 @@ pub fn tried(scratch: &Scratch, mut scenario: Scenario) {
     // Every switch of a random schedule is looked at.
     let schedule = &scenario.setup.network.schedule;
     let switches = match schedule.known().extent {
-        Extent::Horizon => {
+        Extent::Horizon | Extent::Drawn => {
             schedule.segments().take_while(|segment| segment.start_s < scenario.setup.time.end_s).count()
         }
         Extent::Whole | Extent::Period(_) => 0,
@@ -118,9 +118,12 @@ fn write(
         outcome,
         verdicts,
         predicted_agreement,
+        prediction: None,
         goal: scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, outcome, metrics) }),
         digital: None,
+        injected: Vec::new(),
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
+        shapes: None,
     };
     let folder = RunFolder::create(&scratch.folder().join("run"), true).expect("a folder for the run");
     output::write_run(&folder, &record, output::Options { csv: true }).expect("a run can be written");
