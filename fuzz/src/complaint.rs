@@ -6,6 +6,8 @@ use miette::{Diagnostic, MietteHandler, MietteHandlerOpts, ReportHandler};
 
 /// A message is no longer than this, in bytes, and all that is shown with it no longer than four times that.
 const LONGEST: usize = 2_200;
+/// Of one file no more mistakes are told at once.
+const MOST: usize = 32;
 
 /// The error as the program shows it, after looking at all its parts.
 pub fn complaint(error: &dyn Diagnostic) -> String {
@@ -25,7 +27,11 @@ pub fn complaint(error: &dyn Diagnostic) -> String {
     static HANDLER: OnceLock<MietteHandler> = OnceLock::new();
     let handler = HANDLER.get_or_init(|| MietteHandlerOpts::new().wrap_lines(false).color(false).build());
     let shown = Shown { handler, error }.to_string();
-    assert!(shown.len() <= 4 * LONGEST, "{} bytes are shown for {error}", shown.len());
+    // Other mistakes of the same file are told with it, each no longer than if it stood alone.
+    let others: Vec<String> = error.related().into_iter().flatten().map(complaint).collect();
+    assert!(others.len() < MOST, "{} mistakes are told", others.len() + 1);
+    let own = shown.len() - others.iter().map(String::len).sum::<usize>().min(shown.len());
+    assert!(own <= 4 * LONGEST, "{own} bytes are shown for {error}");
     let steers =
         |c: char| c.is_control() && c != '\n' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     assert!(!shown.contains(steers), "steers the terminal: {shown:?}");
