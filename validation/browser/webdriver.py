@@ -70,7 +70,14 @@ class Browser:
         return self.post("/goog/cdp/execute", {"cmd": command, "params": parameters})
 
     def open(self, page, query=""):
-        self.post("/url", {"url": pathlib.Path(page).resolve().as_uri() + query})
+        address = pathlib.Path(page).resolve().as_uri() + query
+        self.post("/url", {"url": address})
+        # On a busy machine the driver answers before the scripts of the page have run.
+        for _ in range(600):
+            if self.run("return [location.href, document.readyState]") == [address, "complete"]:
+                return
+            time.sleep(0.05)
+        raise TimeoutError(f"{address} was not loaded within half a minute")
 
     def screen(self, width, height, dark=False, calm=False, touch=False):
         self.tool("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=touch)
