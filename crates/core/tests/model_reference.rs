@@ -97,6 +97,16 @@ fn the_gain_on_the_error_grows_with_the_square_of_phi() {
         };
         input(1.0) - input(0.0)
     };
+    // p = 6/13, as an explanation of the same model has it too.
+    let given = Given {
+        measured: law.see(&[0.0; 2]).unwrap(),
+        heard: Heard::new(&[0.0], &[0.0], 1).unwrap(),
+        target: Jets::from(&[[0.0; 5]]),
+    };
+    let mut d_state = [0.0; 4];
+    let asked = Asked { input: &mut [0.0], d_state: &mut d_state, shown: &mut [0.0; 3] };
+    law.evaluate(&mut (), given, &[0.0, 0.0, 13.0, 1.0], asked).unwrap();
+    assert!((d_state[2] + 6.0).abs() < 1e-12);
     assert!((gain(0.0) + 2.0).abs() < 1e-12, "α₀ m̂ alone");
     assert!((gain(3.0) - gain(0.0) + 4.0 * 9.0).abs() < 1e-12 && (gain(6.0) - gain(0.0) + 4.0 * 36.0).abs() < 1e-12);
 }

@@ -1,7 +1,7 @@
 //! A point mass without velocity, (a7)–(a9), and many of them: the identity of the proof along real runs.
 
-use crate::common::masses::{by_model, consensus, tracking};
-use crate::common::{assert_first_order, balance_residual, column, last, run, truth};
+use crate::common::masses::{by_model, consensus, is_reached, tracking};
+use crate::common::{assert_first_order, balance_residual, last, run, truth};
 use forwardstep_sim::Signal;
 
 #[test]
@@ -17,15 +17,7 @@ fn eq_a8_loses_exactly_k_y_squared_along_real_runs() {
 
 #[test]
 fn eq_a9_a_mass_of_unknown_weight_reaches_its_target() {
-    let outcome = run(&tracking());
-    for axis in 0..2 {
-        let error = column(&outcome, 0, Signal::Error, axis);
-        let last = error.last().unwrap().abs();
-        assert!(last < 1e-3 * error[0].abs(), "axis {axis}: {} to {last}", error[0]);
-    }
-    // The target is rich enough for the mass to be found.
-    let estimate = last(&outcome, 0, Signal::Estimate, 0);
-    assert!((estimate - 2.0).abs() < 1e-2, "{estimate}");
+    is_reached(&tracking());
 }
 
 #[test]

@@ -65,17 +65,17 @@ pub(super) fn explained(case: &Case<'_>, rate: &BigRational) -> Explained {
             ],
             "",
         );
-    let (r, off) = (symbol("r"), || symbol("Δm"));
-    let learnt = || product(vec![symbol("m").above("−1"), off(), symbol("φ")]);
-    let delta = product(vec![symbol("m").above("−1"), symbol("δ")]);
+    let r = symbol("r");
+    // What m divides.
+    let over_mass = |factors: &[Symbol]| product([&[symbol("m").above("−1")], factors].concat());
     let mut turned = vec![
         Formula::term(&-&zero, r.clone().into()),
         Formula::term(&-&between, e.clone().into()),
-        Formula::term(&-&a1, delta),
+        Formula::term(&-&a1, over_mass(&[symbol("δ")])),
     ];
     let mut fading = Vec::new();
     if case.is_pushed() {
-        turned.push((Sign::Plus, product(vec![symbol("m").above("−1"), symbol("f")])));
+        turned.push((Sign::Plus, over_mass(&[symbol("f")])));
         fading.push((Sign::Minus, symbol("f").into()));
     }
     let cascade = Section::new(Subject::Cascade)
@@ -84,7 +84,11 @@ pub(super) fn explained(case: &Case<'_>, rate: &BigRational) -> Explained {
             vec![
                 Formula::equal(
                     e.clone().derivative(1),
-                    Formula::sum([Formula::term(&-&left, e.clone().into()), plus(r.clone()), (Sign::Plus, learnt())]),
+                    Formula::sum([
+                        Formula::term(&-&left, e.clone().into()),
+                        plus(r.clone()),
+                        (Sign::Plus, over_mass(&[symbol("Δm"), symbol("φ")])),
+                    ]),
                 ),
                 Formula::equal(r.clone().derivative(1), Formula::sum(turned)),
                 filter(symbol("δ"), rate, Formula::sum(fading)),

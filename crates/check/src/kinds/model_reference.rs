@@ -2,8 +2,9 @@
 
 use forwardstep_sim::{AgentSetup, ModelReferenceLaw, Setup};
 
+use super::point_mass::mass_is_known_or_adapted;
 use super::{Claim, KindCheck};
-use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
+use crate::hypothesis::{Hypothesis, Id};
 use crate::theorem::Theorem;
 use crate::theorems::hurwitz;
 
@@ -30,21 +31,12 @@ impl KindCheck for ModelledMass {
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
-        let wrong = agents.iter().find(|agent| keeps_a_wrong_mass(&setup.agents[**agent]));
-        let evidence = wrong.map_or(KindEvidence::PositiveNumbersTrueMass, |agent| KindEvidence::MassNotAdapted {
-            agent: Named::of(setup, *agent),
-        });
-        let gains = Hypothesis::new(Id::ModelReferenceGains, evidence);
+        let learnt = |law: &ModelReferenceLaw| [law.adaptation, law.estimate_start];
+        let gains = Hypothesis::new(Id::ModelReferenceGains, mass_is_known_or_adapted(setup, agents, learnt));
         [gains].into_iter().chain(hurwitz(setup, agents)).collect()
     }
 
     fn target_derivatives(&self, _: &AgentSetup) -> usize {
         2
     }
-}
-
-fn keeps_a_wrong_mass(agent: &AgentSetup) -> bool {
-    agent.law.downcast().is_some_and(|law: &ModelReferenceLaw| {
-        law.adaptation == 0.0 && agent.robot.theta.first() != Some(&law.estimate_start)
-    })
 }

@@ -1,6 +1,6 @@
 //! Point masses without a measured velocity: (a7)–(a9), Remark 7.
 
-use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup};
+use forwardstep_sim::{AgentSetup, Law, PositionOnlyLaw, Setup};
 
 use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
@@ -39,11 +39,8 @@ impl KindCheck for PositionOnlyMass {
     }
 
     fn hypotheses(&self, setup: &Setup, agents: &[usize]) -> Vec<Hypothesis> {
-        let wrong = agents.iter().find(|agent| keeps_a_wrong_mass(&setup.agents[**agent]));
-        let evidence = wrong.map_or(KindEvidence::PositiveNumbersTrueMass, |agent| KindEvidence::MassNotAdapted {
-            agent: Named::of(setup, *agent),
-        });
-        let gains = Hypothesis::new(Id::PositionOnlyGains, evidence);
+        let learnt = |law: &PositionOnlyLaw| [law.adaptation, law.estimate_start];
+        let gains = Hypothesis::new(Id::PositionOnlyGains, mass_is_known_or_adapted(setup, agents, learnt));
         [gains].into_iter().chain(within_bounds(setup, agents)).chain(hurwitz(setup, agents)).collect()
     }
 
@@ -52,8 +49,21 @@ impl KindCheck for PositionOnlyMass {
     }
 }
 
-fn keeps_a_wrong_mass(agent: &AgentSetup) -> bool {
-    agent.law.downcast().is_some_and(|law: &PositionOnlyLaw| {
-        law.adaptation == 0.0 && agent.robot.theta.first() != Some(&law.estimate_start)
+/// Whether every estimate of a mass is adapted or is the mass, by γ* and m̂(0) of its law.
+pub(super) fn mass_is_known_or_adapted<L: Law>(
+    setup: &Setup,
+    agents: &[usize],
+    learnt: impl Fn(&L) -> [f64; 2],
+) -> KindEvidence {
+    let is_wrong = |agent: &AgentSetup| {
+        agent
+            .law
+            .downcast::<L>()
+            .map(&learnt)
+            .is_some_and(|[adaptation, start]| adaptation == 0.0 && agent.robot.theta.first() != Some(&start))
+    };
+    let wrong = agents.iter().find(|agent| is_wrong(&setup.agents[**agent]));
+    wrong.map_or(KindEvidence::PositiveNumbersTrueMass, |agent| KindEvidence::MassNotAdapted {
+        agent: Named::of(setup, *agent),
     })
 }

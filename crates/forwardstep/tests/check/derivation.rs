@@ -52,6 +52,35 @@ fn every_shipped_scenario_is_explained_or_says_why_not() {
     }
 }
 
+#[test]
+fn own_a_law_by_a_model_is_explained_with_its_numbers_and_with_what_pushes_it() {
+    let folder = folder();
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../checker/cases/model-reference.toml"));
+    let text = text.unwrap();
+    let pushed = format!("{text}\n[[external_wrenches]]\non = [\"mass\"]\nby.force_n = [1, 0]\n");
+    let said = |text: &str| {
+        std::fs::write(folder.path().join("mass.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["explain", "mass.toml"]).success())
+    };
+    let plain = said(&text);
+    // Roots 1 and 2: α₁ = 3, α₀ = 2, p = 6/13, b = 33/13 and α₀ − p b = 140/169.
+    for line in [
+        "u = m̂ φ_0 + m̂′ φ − 3 η",
+        "φ_0 = ẍ_d + 3 ẋ_d − 2 e − 3 y",
+        "φ̇ + (6/13) φ = φ_0",
+        "ė = −(33/13) e + r + m⁻¹ Δm φ",
+        "ṙ = −(6/13) r − (140/169) e − 3 m⁻¹ δ\n",
+        "δ̇ + 20 δ = 0",
+    ] {
+        assert!(plain.contains(line), "{line}: {plain}");
+    }
+    let pushed = said(&pushed);
+    for line in ["m ẍ = u + f", "− 3 m⁻¹ δ + m⁻¹ f\n", "δ̇ + 20 δ = −f"] {
+        assert!(pushed.contains(line), "{line}: {pushed}");
+    }
+}
+
 /// The cases beside the checker have laws and bounds that no shipped scenario has. Text stands behind a `%`.
 #[test]
 fn regress_every_letter_of_every_case_has_a_command_in_latex() {

@@ -272,7 +272,7 @@ pub(super) mod tests {
         );
         assert!(refused("<translate>0 0 200<", "<translate>0 0 x<").contains("no numbers"));
         assert!(refused("<p>0 1 2</p>", "<p>0 1 -2</p>").contains("no number"));
-        assert!(refused("\"#corners\"", "\"#nobody\"").contains("not there"));
+        assert!(refused("\"#corners\"", "\"#absent\"").contains("not there"));
         assert!(
             refused("<float_array id=\"numbers\" count=\"12\">0 0", "<float_array id=\"numbers\" count=\"12\">0 a")
                 .contains("no numbers")

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{AgentSetup, AxisUnit, ModelReferenceLaw, PositionOnlyLaw, RobotSetup, Setup, Start};
+use forwardstep_sim::{AgentSetup, AxisUnit, ModelReferenceLaw, PositionOnlyLaw, RobotSetup, Setup, Signal, Start};
 
 use super::{axes, setup, silent, switching, wave};
 
@@ -32,6 +32,18 @@ pub fn mass(index: usize, kg: f64, q: [f64; 2], roots: &[f64]) -> AgentSetup {
         enforce_limits: false,
         pushes: Vec::new(),
     }
+}
+
+/// Its target is reached, and is rich enough for its mass, 2 kg, to be found.
+pub fn is_reached(setup: &Setup) {
+    let outcome = super::run(setup);
+    for axis in 0..2 {
+        let error = super::column(&outcome, 0, Signal::Error, axis);
+        let last = error.last().unwrap().abs();
+        assert!(last < 1e-3 * error[0].abs(), "axis {axis}: {} to {last}", error[0]);
+    }
+    let estimate = super::last(&outcome, 0, Signal::Estimate, 0);
+    assert!((estimate - 2.0).abs() < 1e-2, "{estimate}");
 }
 
 pub fn tracking() -> Setup {

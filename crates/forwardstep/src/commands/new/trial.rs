@@ -185,9 +185,8 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
         asked = true;
     };
     let metrics = Metrics::of(setup, &outcome.recording, None, None);
-    match outcome.ending {
-        Ending::BrokeDown(_) => return Ok(Went::Badly(ending_sentence(setup, &outcome.ending))),
-        Ending::Completed | Ending::Interrupted { .. } | Ending::CutOff { .. } => {}
+    if let Ending::BrokeDown(_) = outcome.ending {
+        return Ok(Went::Badly(ending_sentence(setup, &outcome.ending)));
     }
     let Disagreement::Measured { last, largest, .. } = metrics.disagreement else {
         return Ok(Went::Badly("there is nothing to compare".to_owned()));
