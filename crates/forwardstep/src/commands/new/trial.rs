@@ -154,6 +154,12 @@ fn describe(tuning: Tuning, adapts: bool) -> String {
     format!("with bandwidths of {damping_per_s} and {adaptation_per_s} per second and {knows}: ")
 }
 
+/// Whether a trial ends before its time, by the shares of its effort and of its horizon: it crawls, or it would not reach its end at this pace and
+/// was not asked why before.
+fn is_slow(taken: f64, come: f64, asked: bool) -> bool {
+    taken > EARLY && (come < SO_FAR || (!asked && come < taken))
+}
+
 /// Simulates a scenario, as long as there is `effort` left.
 fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
     let setup = &scenario.setup;
@@ -167,7 +173,7 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
             bar.update(progress);
             left = left.saturating_sub(step);
             let (taken, come) = (1.0 - left as f64 / given as f64, progress.t_s / progress.end_s);
-            ends_early = taken > EARLY && (come < SO_FAR || (!asked && come < taken));
+            ends_early = is_slow(taken, come, asked);
             if left == 0 || ends_early { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         bar.clear();
@@ -280,5 +286,13 @@ mod tests {
         for (value, goal) in [(0.0087, "9e-3"), (0.031, "4e-2"), (1.01, "2e0"), (97.0, "1e2"), (3.2e-7, "4e-7")] {
             assert_eq!(format!("{:e}", one_digit(value)), goal);
         }
+    }
+
+    #[test]
+    fn a_trial_is_slow_where_it_crawls_or_would_not_reach_its_end_and_was_not_asked_why() {
+        assert!(!is_slow(0.05, 0.001, false), "nothing is known so early");
+        assert!(is_slow(0.2, 0.005, false) && is_slow(0.2, 0.005, true), "it crawls");
+        assert!(is_slow(0.2, 0.15, false) && !is_slow(0.2, 0.15, true), "once is enough to ask");
+        assert!(!is_slow(0.2, 0.25, false), "it reaches its end");
     }
 }
