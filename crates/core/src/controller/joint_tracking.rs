@@ -18,20 +18,21 @@
 //! whatever z does, so without τ_ext s is bounded and square-integrable, and ϑ̂ is bounded. For ℓ ≥ 1 let x₀ = e and
 //! x_r = z^(r−1) − q_d^(r). Then ẋ₀ = x₁ + s, ẋ_r = x_{r+1}, and the last rate is −Σ α_r x_r − α₁ s: a stable linear system whose inputs
 //! are s. For ℓ = 0 it is ė = −α₀ e + s. Hence e, ė and all x_r are bounded, ż is, ṡ is, s → 0, and e → 0 with ė.
+//!
+//! **Desired dynamics** that a user writes down may lead z^(ℓ) as well, with a nonlinear protocol in which agents hear each other's
+//! positions. V̇ is the same, so that s is square-integrable; whether e vanishes is what is known of those dynamics.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use super::guide::{Guide, GuideWork, Leads};
+use super::{Asked, Balance, Controller, Given, Trouble, Truth};
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::plant::{Mechanical, Plant};
 use crate::reference::Position;
 use crate::robot::{Called, Lagrangian, TwoVelocity};
 use crate::signal::{Block, Signal};
 use crate::{InverseQuadratic, LengthError};
-
-#[cfg(doc)]
-use super::Guide;
 
 /// q and q̇ of a robot.
 #[derive(Clone, Copy, Debug)]
@@ -48,16 +49,16 @@ pub struct MotionMeasured<'a> {
 /// adapted, q − q_d. The target has N derivatives for every axis, two at least.
 ///
 /// **Source**: (5)–(7) after Slotine and Li, with the reference dynamics of [`Guide`] for k = 2. **Measures**: q, q̇.
-/// **Transmits**: nothing.
-/// **Requires**: K and Γ symmetric positive definite; one to four positive roots; q_d with as many bounded derivatives as there are
-/// roots, and two at least.
-/// **Guarantees**: q − q_d → 0 and q̇ − q̇_d → 0.
+/// **Transmits**: nothing, or q where desired dynamics hear it.
+/// **Requires**: K and Γ symmetric positive definite; a Hurwitz polynomial; q_d with as many bounded derivatives as that has roots, and
+/// two at least.
+/// **Guarantees**: q − q_d → 0 and q̇ − q̇_d → 0; under desired dynamics of one's own that s is bounded and square-integrable.
 /// **Deviates from the paper**: it has no trajectory for a robot in joint space; the argument at the head of this file is that of
 /// its differential cascades.
 ///
 /// ```
 /// use forwardstep_core::ResolvedGain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, JointTracking, Truth};
+/// use forwardstep_core::controller::{Asked, Controller, Given, Guide, Jets, JointTracking, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant};
 /// use forwardstep_core::reference::Heard;
@@ -66,7 +67,8 @@ pub struct MotionMeasured<'a> {
 /// // A mass of 4 kg comes to rest at zero, its mass known.
 /// let robot = PointMass { dimension: 1 };
 /// let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![8.0]), adaptation: None, bounds: None };
-/// let law = JointTracking { robot, alpha: vec![2.0], law, estimate_start: vec![4.0] };
+/// let guide = Guide::Tracking { alpha: vec![2.0] };
+/// let law = JointTracking { robot, guide, law, estimate_start: vec![4.0] };
 /// let plant = Mechanical { robot, theta: vec![4.0] };
 ///
 /// let (state, mut tau, mut rate, mut shown) = ([1.0, 0.5], [0.0], [0.0; 2], [0.0; 4]);
@@ -85,8 +87,8 @@ pub struct MotionMeasured<'a> {
 pub struct JointTracking<R> {
     /// The robot, whose ϑ is unknown.
     pub robot: R,
-    /// α₀ … α_{N−1}, none of which is missing: at least one.
-    pub alpha: Vec<f64>,
+    /// Tracking with one α at least, or desired dynamics written in what is measured.
+    pub guide: Guide,
     /// K and Γ.
     pub law: SlotineLi,
     /// ϑ̂(0), or ϑ when it is known.
@@ -97,6 +99,9 @@ pub struct JointTracking<R> {
 #[derive(Clone, Debug)]
 pub struct JointTrackingWork<S> {
     robot: S,
+    guide: GuideWork,
+    /// q, then q̇.
+    measured: Vec<f64>,
     z: Vec<f64>,
     dz: Vec<f64>,
     s: Vec<f64>,
@@ -113,7 +118,7 @@ where
 {
     /// Numbers of z, ż, …, z^(ℓ−1).
     fn reference_len(&self) -> usize {
-        self.alpha.len().saturating_sub(1) * self.robot.dof()
+        self.guide.vectors(2) * self.robot.dof()
     }
 
     /// Entries of ϑ̂ in the state.
@@ -128,7 +133,7 @@ where
 
     fn check(&self) -> Result<(), LengthError> {
         let (m, p) = (self.robot.dof(), self.robot.parameter_count());
-        LengthError::check("coefficients of the reference", 1, self.alpha.len().min(1))?;
+        LengthError::check("coefficients of the reference", 1, self.guide.roots().min(1))?;
         LengthError::check("damping gain", m, self.law.damping.size())?;
         LengthError::check("start of the estimate", p, self.estimate_start.len())?;
         self.law.adaptation.as_ref().map_or(Ok(()), |gamma| LengthError::check("adaptation gain", p, gamma.size()))
@@ -138,39 +143,29 @@ where
     fn lead(
         &self,
         work: &mut JointTrackingWork<R::Scratch>,
-        MotionMeasured { q, dq }: MotionMeasured<'_>,
-        target: Jets<'_>,
+        given: Given<'_, Self>,
         state: &[f64],
         d_state: &mut [f64],
-    ) -> Result<(), LengthError> {
-        let (m, n) = (self.robot.dof(), self.alpha.len());
+    ) -> Result<(), LengthError>
+    where
+        R: Clone + Send + Sync + 'static,
+    {
+        let (m, Given { measured: MotionMeasured { q, dq }, heard, target }) = (self.robot.dof(), given);
         LengthError::check("target", m, target.len())?;
-        for (axis, jet) in target.iter().enumerate() {
-            // What is to follow q_d^(r): q, q̇, then z and its derivatives.
-            let own = |r: usize| match r {
-                0 => q[axis],
-                1 => dq[axis],
-                r => state[(r - 1) * m + axis],
-            };
-            // The derivative of order n + `higher` that the roots ask for.
-            let asked = |higher: usize| {
-                let mut rate = jet.get(n + higher).copied().unwrap_or(f64::NAN);
-                for (r, alpha) in self.alpha.iter().enumerate().rev() {
-                    rate -= alpha * (own(r + higher) - jet[r + higher]);
-                }
-                rate
-            };
-            if n == 1 {
-                (work.z[axis], work.dz[axis]) = (asked(0), asked(1));
-                continue;
+        if let Guide::Tracking { alpha } = &self.guide
+            && let [alpha] = alpha[..]
+        {
+            for (axis, jet) in target.iter().enumerate() {
+                work.z[axis] = jet[1] - alpha * (q[axis] - jet[0]);
+                work.dz[axis] = jet[2] - alpha * (dq[axis] - jet[1]);
             }
-            let top = (n - 2) * m;
-            for k in (0..top).step_by(m) {
-                d_state[k + axis] = state[k + m + axis];
-            }
-            d_state[top + axis] = asked(0);
-            (work.z[axis], work.dz[axis]) = (state[axis], d_state[axis]);
+            return Ok(());
         }
+        work.measured[..m].copy_from_slice(q);
+        work.measured[m..].copy_from_slice(dq);
+        self.guide.rate(2, m, Leads { measured: &work.measured, state, heard, target }, &mut work.guide, d_state)?;
+        work.z.copy_from_slice(&state[..m]);
+        work.dz.copy_from_slice(&d_state[..m]);
         Ok(())
     }
 }
@@ -189,13 +184,15 @@ where
 
     fn target_derivatives(&self) -> usize {
         // ż holds the second one even where one root asks for the first only.
-        self.alpha.len().max(2)
+        self.guide.target_derivatives().max(2)
     }
 
     fn scratch(&self) -> Self::Scratch {
         let (m, p) = (self.robot.dof(), self.robot.parameter_count());
         JointTrackingWork {
             robot: self.robot.scratch(),
+            guide: self.guide.work(m),
+            measured: vec![0.0; 2 * m],
             z: vec![0.0; m],
             dz: vec![0.0; m],
             s: vec![0.0; m],
@@ -209,14 +206,14 @@ where
 
     fn states(&self) -> Vec<Block> {
         let m = self.robot.dof();
-        let mut states: Vec<Block> = (1..self.alpha.len()).map(|r| (Signal::Reference(r as u8 - 1), m)).collect();
+        let mut states: Vec<Block> = (0..self.guide.vectors(2)).map(|r| (Signal::Reference(r as u8), m)).collect();
         states.extend((self.estimates() > 0).then(|| (Signal::Estimate, self.estimates())));
         states
     }
 
     fn shown(&self) -> Vec<Block> {
         let m = self.robot.dof();
-        let references = self.alpha.len().saturating_sub(1).max(2);
+        let references = self.guide.vectors(2).max(2);
         let mut shown: Vec<Block> = (0..references).map(|r| (Signal::Reference(r as u8), m)).collect();
         shown.push((Signal::TrackingError, m));
         shown.extend((self.estimates() > 0).then(|| (Signal::Estimate, self.estimates())));
@@ -273,7 +270,8 @@ where
         LengthError::check("rate", state.len(), d_state.len())?;
         LengthError::check("shown", self.shown_reference() + p + 2 * m, shown.len())?;
         let MotionMeasured { q, dq } = given.measured;
-        self.lead(work, given.measured, given.target, state, d_state)?;
+        let (own, d_own) = (&state[..reference], &mut d_state[..reference]);
+        self.lead(work, given, own, d_own)?;
         let JointTrackingWork { robot, z, dz, s, yt_s, .. } = work;
         let theta_hat = if p > 0 { &state[reference..] } else { &self.estimate_start };
         let out = SlotineLiOutput { s: &mut *s, tau: input, yt_s: &mut *yt_s };

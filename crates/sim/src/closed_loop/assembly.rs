@@ -224,26 +224,30 @@ impl<'a> Assembly<'a> {
         // One root at least.
         let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
         let suits = |order: usize| Guide::Tracking { alpha: vec![1.0; order] }.check(1, 1).map_err(wrong);
-        let alpha = if let Some(desired) = self.reference().downcast::<Desired>() {
+        let guide = if let Some(desired) = self.reference().downcast::<Desired>() {
             let dynamics = desired.dynamics_of(&own.name)?;
             if dynamics.written() != WrittenIn::Measured {
                 let (agent, law) = (own.name.clone(), own.law.words().name);
                 return Err(SetupError::DesiredVariables { agent, law });
             }
             suits(dynamics.order())?;
-            dynamics.own().to_vec()
+            if dynamics.is_linear() {
+                Guide::Tracking { alpha: dynamics.own().to_vec() }
+            } else {
+                Guide::Desired(dynamics)
+            }
         } else {
             suits(own.roots_per_s.len())?;
             let mut alpha =
                 polynomial(&own.roots_per_s).map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
             // The leading one is not listed.
             alpha.pop();
-            alpha
+            Guide::Tracking { alpha }
         };
         let adaptive = own.law.downcast().map(|law: &Adaptive| law.estimate_start.clone());
         let estimate_start = adaptive.unwrap_or_else(|| theta.clone());
         let plant = Mechanical { robot: robot.clone(), theta };
-        self.solo(plant, JointTracking { robot, alpha, law, estimate_start })
+        self.solo(plant, JointTracking { robot, guide, law, estimate_start })
     }
 
     /// Any plant under any controller, one agent by itself.

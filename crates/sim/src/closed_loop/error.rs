@@ -105,12 +105,12 @@ pub enum SetupError {
         /// k.
         least: usize,
     },
-    /// A nonlinear protocol by which a robot that is no chain follows a target.
+    /// A nonlinear protocol by which a robot that is no chain follows a target, and velocities that are heard.
     #[error(
-        "agent `{agent}`: a robot that is no chain follows its target by linear desired dynamics, without a nonlinear protocol: leave \
-         `nonlinear` out, leave out the target, or write the robot as a `chain`"
+        "agent `{agent}`: a robot that follows its target by a nonlinear protocol hears positions, and no velocities: leave the second \
+         entry of `heard` out, or the target"
     )]
-    ProtocolBesideTarget {
+    ProtocolHearsVelocities {
         /// The agent.
         agent: String,
     },
@@ -332,7 +332,7 @@ pub enum SetupError {
     /// q̈ or ż would have to be remembered.
     #[error(
         "a link has a delay of up to {delay_s} s, but accelerations are transmitted at once in continuous time; take the \
-         design that exchanges positions and velocities only, no delay, or sampled control"
+         design `continuous` or `composite`, no delay, or sampled control"
     )]
     DelayedDerived {
         /// The longest delay of the link, s.

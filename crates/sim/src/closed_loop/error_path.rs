@@ -38,7 +38,7 @@ impl SetupError {
             | SetupError::NotTracking { .. }
             | SetupError::ReferenceOfLaw { .. } => "reference".into(),
             SetupError::Desired { .. } => reference(),
-            SetupError::ProtocolBesideTarget { .. } => reference().key("nonlinear"),
+            SetupError::ProtocolHearsVelocities { .. } => reference().key("heard"),
             SetupError::DesiredVariables { .. } => reference().key("written_in"),
             SetupError::DesiredOrder { .. } => reference().key("polynomial"),
             SetupError::Backstepping(BacksteppingError::Filter { .. }) => reference().key("filter_s"),

@@ -206,8 +206,8 @@ impl ReferenceDynamics for Desired {
         }
         for agent in &setup.agents {
             let (order, least) = (dynamics.order(), plant_order(agent));
-            if !linear && self.follows_target && !agent.robot.kind.is::<ChainModel>() {
-                return Err(SetupError::ProtocolBesideTarget { agent: agent.name.clone() });
+            if self.hears_beside_target() && self.hears_velocities() && !agent.robot.kind.is::<ChainModel>() {
+                return Err(SetupError::ProtocolHearsVelocities { agent: agent.name.clone() });
             }
             if order < least {
                 return Err(SetupError::DesiredOrder { agent: agent.name.clone(), order, least });

@@ -9,6 +9,7 @@ use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol};
 use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
     AgentSetup, ChainModel, Known, Network, Outcome, RobotSetup, Setup, SetupError, Signal, simulate,
 };
@@ -135,8 +136,89 @@ fn nonlinear_protocols_without_meaning_are_refused() {
     assert!(matches!(refused(chains(), in_x), SetupError::Desired { .. }));
     // Without a target there is no variable beyond the weights but t.
     assert!(matches!(refused(chains(), nonlinear(4, x(7))), SetupError::Desired { .. }));
-    let beside = Desired { follows_target: true, ..nonlinear(3, -x(0)) };
-    assert!(matches!(refused(consensus_of_masses(1.0), beside), SetupError::ProtocolBesideTarget { .. }));
+    let beside = Desired { follows_target: true, heard: vec![0.0, 1.0], ..nonlinear(3, -x(0)) };
+    let said = refused(consensus_of_masses(1.0), beside.clone());
+    assert!(matches!(said, SetupError::ProtocolHearsVelocities { .. }), "{said:?}");
+    // One that follows a target in what is measured has to have one, and in z does not exist.
+    let said = refused(consensus_of_masses(1.0), Desired { heard: Vec::new(), ..beside.clone() });
+    assert!(matches!(said, SetupError::NoTarget { .. }), "{said:?}");
+    let said = refused(followers(3), Desired { heard: Vec::new(), written: WrittenIn::Z, ..beside });
+    assert!(matches!(said, SetupError::DesiredVariables { .. }), "{said:?}");
+}
+
+/// Masses of one kilogramme with a target each, over links that switch and are late.
+fn followers(agents: usize) -> Setup {
+    let mass = |k: usize| {
+        let mass = AgentSetup::new(format!("mass-{k}"), RobotSetup::point_mass(1, 1.0), Known::gain(2.0));
+        let mut mass = mass.at(&[1.0 - 0.8 * k as f64]).following(swing(k));
+        (mass.start.dq, mass.start.reference) = (vec![0.3], vec![vec![0.5 - 0.2 * k as f64], vec![-0.1]]);
+        mass
+    };
+    let any = Desired { follows_target: true, ..nonlinear(3, -x(0)) };
+    common_setup((0..agents).map(mass).collect(), Arc::new(any), switching(), 10.0)
+}
+
+fn swing(k: usize) -> Trajectory {
+    let wave = Sinusoid { amplitude: 0.6, rad_per_s: 0.8 + 0.1 * k as f64, phase_rad: 0.3 };
+    Trajectory::new(vec![Path::Sinusoids { offset: 0.2 * k as f64, waves: vec![wave] }]).unwrap()
+}
+
+/// What stands beside q⃛_d, which is there without f, in q⃛ = q⃛_d − 3 ë − ë³ − 4 ė − 2 e + tanh Σ_j w_ij (q_j − q_i), of order N = 3, whose variables are q, q̇, q̈, what is heard, Σ_j w_ij, q_d and
+/// its derivatives, t.
+fn drawn_to_targets_and_neighbours() -> Expression {
+    let e = |r: usize| x(r) - x(r + 5);
+    let alone = -e(2) * 3.0 - e(2).power(3.0) - e(1) * 4.0 - e(0) * 2.0;
+    alone + ((x(3) - x(4) * x(0)) * (Expression::number(2.0) + (x(9) * 0.7).sin_of())).tanh_of()
+}
+
+/// The same with targets: masses of one kilogramme behind (6) follow as chains of two integrators do.
+#[test]
+fn eq_43_robots_follow_targets_by_a_nonlinear_protocol_as_chains_do() {
+    let desired = Desired { follows_target: true, ..nonlinear(3, drawn_to_targets_and_neighbours()) };
+    let integrators = Formulas::new(2, &Expression::number(0.0), Vec::new(), &Expression::number(1.0)).unwrap();
+    let integrators = ChainModel::Derivatives(Arc::new(integrators));
+    let masses = under(followers(3), desired.clone());
+    let mut chains = masses.clone();
+    for (k, own) in chains.agents.iter_mut().enumerate() {
+        let start = [own.start.q[0], own.start.dq[0]];
+        let mut chain = agent(k, integrators.clone(), &[], steps()[0].clone(), &[], &start);
+        (chain.start.reference, chain.target) = (own.start.reference.clone(), own.target.clone());
+        *own = chain;
+    }
+    let (masses, chains) = (run(&masses), run(&chains));
+    for signal in [Signal::Position, Signal::Reference(1), Signal::Error] {
+        let (of_masses, of_chains) = (columns(&masses, signal), columns(&chains, signal));
+        assert!(of_masses.len() == 3 && of_chains.len() == 3, "{signal:?}");
+        let apart = |(a, b): (&&[f64], &&[f64])| a.iter().zip(*b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let gap = of_masses.iter().zip(&of_chains).map(apart).fold(0.0, f64::max);
+        assert!(gap < 1e-8, "{signal:?}: {gap:e}");
+    }
+    // Neighbours are heard: without them each comes nearer to its own target.
+    let far =
+        |outcome: &Outcome| columns(outcome, Signal::Error).iter().map(|e| e[e.len() - 1].abs()).fold(0.0, f64::max);
+    let alone = Desired { follows_target: true, ..nonlinear(3, drawn_to_targets_and_neighbours()) };
+    let mut silent = under(followers(3), alone);
+    silent.network = Network::silent(3);
+    assert!(far(&masses) > 0.05 && far(&run(&silent)) < 0.5 * far(&masses), "{} {}", far(&masses), far(&run(&silent)));
+}
+
+/// Arms that estimate: V falls as (6) and (7) have it whatever the protocol does, and sampled runs come to continuous ones.
+#[test]
+fn thm_lyapunov_of_arms_behind_targets_and_a_nonlinear_protocol_balances() {
+    let desired = Desired { follows_target: true, ..nonlinear(3, drawn_to_targets_and_neighbours()) };
+    let agents = (0..3)
+        .map(|k| {
+            let paths = [swing(k).paths()[0].clone(), swing(k + 1).paths()[0].clone()];
+            arm(k, [0.4 * k as f64, 0.3 - 0.2 * k as f64], 0.7).following(Trajectory::new(paths.to_vec()).unwrap())
+        })
+        .collect();
+    let setup = under(common_setup(agents, Arc::new(desired.clone()), switching(), 4.0), desired);
+    let outcome = run(&setup);
+    for agent in 0..3 {
+        assert!(balance_residual(&outcome, agent, 0.0) < 1e-7, "{}", balance_residual(&outcome, agent, 0.0));
+        assert!(column(&outcome, agent, Signal::Lyapunov, 0)[0] > 0.1);
+    }
+    assert_first_order(&setup, 250.0);
 }
 
 /// With m = 1 a robot has ṡ = −K s, as a chain of integrators has under feedback linearisation: both take the same protocol the same way,

@@ -40,7 +40,7 @@ pub struct DesiredFile {
     pub follows_target: Option<bool>,
     /// In which variables the reference dynamics are written; it makes a difference only where x does not follow them. Default: `measured`.
     pub written_in: Option<WrittenInFile>,
-    /// A nonlinear protocol: a formula that is added to the right side, for chains, and for robots without targets. Its variables are x, dx, d2x, … below the order,
+    /// A nonlinear protocol: a formula that is added to the right side, for chains and robots. Its variables are x, dx, d2x, … below the order,
     /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, xd, dxd, d2xd, … of a target, and t in
     /// s. With it agents may follow targets and hear neighbours. Default: none.
     pub nonlinear: Option<At<String>>,
