@@ -6,7 +6,7 @@ use forwardstep_sim::setup::Setup;
 
 use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
 use super::metrics::Metrics;
-use super::names::{agent_name, gap_unit, gap_words, unit};
+use super::names::{agent_name, gap_unit_on, gap_words, unit};
 use super::prediction::{PredictedRate, Predictions};
 use super::record::RunRecord;
 use super::table::Table;
@@ -99,7 +99,8 @@ impl End {
     fn sentence(&self, setup: &Setup, reached: bool, trend: Trend) -> String {
         let End { kind, axis, agents, gap, speed } = self;
         let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
-        let size = with_unit(*gap, gap_unit(setup));
+        let first = agents.first().copied().unwrap_or(0);
+        let size = with_unit(*gap, gap_unit_on(setup, first, *axis));
         let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
         let led = setup.following().is_some();
         let (done, so_far) = match (kind, led) {
@@ -112,7 +113,6 @@ impl End {
         }
         let still = match speed {
             Some(speed) if *kind == Gap::Disagreement => {
-                let first = agents.first().copied().unwrap_or(0);
                 format!(", still moving at {}", with_unit(*speed, unit(setup, first, Signal::Velocity, *axis)))
             }
             Some(_) | None => String::new(),

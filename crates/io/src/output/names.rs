@@ -200,6 +200,12 @@ pub fn gap_unit(setup: &Setup) -> String {
     }
 }
 
+/// The same of one axis of an agent, where others may have another unit.
+pub fn gap_unit_on(setup: &Setup, agent: usize, axis: usize) -> String {
+    let unit = unit(setup, agent, gap_signal(setup), axis);
+    if unit == "1" { String::new() } else { unit }
+}
+
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let own = axis_unit(setup, agent, axis);
