@@ -648,7 +648,7 @@ USUAL_LAW = {robot: law for law, robots in reversed(MADE_FOR.items()) for robot 
 DIRECTIONS = {"ring": ("forward", "both"), "path": ("forward", "both"), "star": ("out", "in", "both"), "complete": ()}
 BLIND, ROOTLESS = ("position_only", "model_reference"), ("task_space", "attitude", "passivity_filter")
 CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adaptive_backstepping"), ("continuous", "observer")
-LED = {"differentiable": "theorem-9", "without_acceleration": "remark-12", "swarm": "swarm", "observer": "leader-observer"}
+LED = dict(differentiable="theorem-9", without_acceleration="remark-12", swarm="swarm", composite="composite", observer="leader-observer")
 
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
                   "bounds determinant_floor antiderivatives null_space tip_velocity bias_m_s2")
@@ -1028,7 +1028,7 @@ def theorem(scenario):
 def requirements(scenario):
     agents, reference, design, control = scenario.agents, scenario.reference, scenario.body.get("design"), scenario.control
     agreeing, leading = reference in ("consensus", "pure_integral", "backstepping"), reference == "leader"
-    turns, late = (leading and design in FIRST_ORDER and scenario.over() == each for each in ("-switching", "-late"))
+    turns, late = (leading and design in (*FIRST_ORDER, "composite") and scenario.over() == each for each in ("-switching", "-late"))
     kinds = {treated(agent) for agent in agents if agent.index != scenario.leader}
     tips, flying, chains, lagrangian, adaptive = ([agent for agent in agents if agent.law in laws] for laws in (
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
@@ -1042,7 +1042,7 @@ def requirements(scenario):
         (agreeing and any(a.manipulability > 0 for a in agents), "manipulability"), ({"continuous"} in designs, "known-masses"),
         (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
         (leading, "leader-in-every-graph dwell-time" if turns else "leader-reaches-all"),
-        (leading and (late or design not in (*FIRST_ORDER, "swarm")), "constant-weights"), (lagrangian, "positive-gains"),
+        (leading and (late or design not in (*FIRST_ORDER, "composite", "swarm")), "constant-weights"), (lagrangian, "positive-gains"),
         (rooted(scenario) or leading and design != "swarm", "hurwitz"), (design == "swarm", "printed-design mutual-weights swarm-coupling"),
         (reference != "tracking" and scenario.varying(), "bounded-weights"), (any("rotors" in a.body for a in flying), "every-wrench"),
         (len(kinds) > 1 and not all(a.tracks for a in agents), "one-kind"), ("thrust by_acceleration" in kinds, "unbiased-acceleration"),

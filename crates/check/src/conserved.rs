@@ -124,7 +124,7 @@ impl Conserved<'_> {
             )
         };
         let velocity = match setup.exchange {
-            Exchange::PositionVelocity | Exchange::Estimates => {
+            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                 setup.agents[i].roots_per_s.first_real().map_or(0.0, f64::recip)
             }
             Exchange::Position => 0.0,

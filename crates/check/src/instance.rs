@@ -91,9 +91,9 @@ pub(crate) fn designed(setup: &Setup) -> Option<Setup> {
 pub(crate) fn name(design: Design, exchange: Exchange) -> &'static str {
     match (design, exchange) {
         (Design::Consensus, Exchange::Position) => "(24)",
-        (Design::Consensus, Exchange::PositionVelocity | Exchange::Estimates) => "(a5)",
+        (Design::Consensus, Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite) => "(a5)",
         (Design::PureIntegral, Exchange::Position) => "(23)",
-        (Design::PureIntegral, Exchange::PositionVelocity | Exchange::Estimates) => "(3)",
+        (Design::PureIntegral, Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite) => "(3)",
         (Design::Tracking, _) => "(43) for a target",
     }
 }

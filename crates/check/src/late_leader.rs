@@ -17,7 +17,7 @@ const SETTLED: f64 = 1e-13;
 /// What is asked for beyond what is needed, as a part of the largest: far more than sweeping and rounding leave.
 const MORE: f64 = 1e-9;
 
-/// A bound of what is left of q_i − q_0, in the unit of the axes; nothing where none could be verified, as of a leader that is
+/// A bound of what is left of q_i − q_0 behind a filter 1/(p + α), or one of two real roots, in the unit of the axes; nothing where none could be verified, as of a leader that is
 /// an agent, of a delay without a bound, or of a weight that varies.
 pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
     let drive = following.drive_bound(None);
@@ -72,7 +72,10 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
         (0..count).map(|_| Row { degree: 0.0, terms: 0, weight_s: 0.0, heard: Vec::new() }).collect();
     // Controllers that sample hear up to a period later.
     let period_s = setup.control.as_ref().map_or(0.0, |control| 1.0 / control.sample_hz);
-    let observes = setup.exchange == Exchange::Estimates;
+    let holds = match setup.exchange {
+        Exchange::Estimates | Exchange::Composite => true,
+        Exchange::Position | Exchange::PositionVelocity => false,
+    };
     for edge in edges {
         let Some(to) = *index.get(edge.to)? else { continue };
         let weight = edge.weight.constant()?;
@@ -83,8 +86,8 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
         let row = rows.get_mut(to)?;
         row.degree += weight;
         row.terms += 1;
-        // What an observer tells is what it held a sample ago.
-        let told_s = if observes && index.get(edge.from)?.is_some() { period_s } else { 0.0 };
+        // What is told is what was held a sample ago, where it is not measured.
+        let told_s = if holds && index.get(edge.from)?.is_some() { period_s } else { 0.0 };
         row.weight_s += weight * (known.bound_s + period_s + told_s);
         row.heard.extend(index.get(edge.from)?.map(|from| (from, weight)));
     }

@@ -89,6 +89,8 @@ pub enum Theorem {
     Remark12,
     /// Swarm tracking, named in Remark 11.
     Swarm,
+    /// Agreement with a leader on one vector.
+    CompositeLeader,
     /// An observer of the leader, of the kind that Remark 11 names for contrast.
     LeaderObserver,
     /// (43) with desired dynamics that are no design of the paper.
@@ -133,6 +135,7 @@ impl Theorem {
             Theorem::Theorem9 => "theorem-9",
             Theorem::Remark12 => "remark-12",
             Theorem::Swarm => "swarm",
+            Theorem::CompositeLeader => "composite",
             Theorem::LeaderObserver => "leader-observer",
             Theorem::Desired => "desired-dynamics",
             Theorem::Declared(_) => "declared",
@@ -177,6 +180,7 @@ impl Theorem {
             | Theorem::TipVelocity
             | Theorem::ThrustByAcceleration
             | Theorem::LeaderObserver
+            | Theorem::CompositeLeader
             | Theorem::Swarm => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -199,7 +203,7 @@ impl fmt::Display for Theorem {
             }
             Theorem::OwnOrders { exchange, least, most } => {
                 let dynamics = match exchange {
-                    Exchange::PositionVelocity | Exchange::Estimates => "(a5)",
+                    Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => "(a5)",
                     Exchange::Position => "(24)",
                 };
                 return write!(f, "the argument of Theorem 3, reference dynamics {dynamics} of orders {least} to {most}");
@@ -254,6 +258,9 @@ impl fmt::Display for Theorem {
             Theorem::Remark12 => "Remark 12, reference dynamics (122)",
             Theorem::Desired => "Section IV, (43) with desired dynamics that are no design of the paper",
             Theorem::Swarm => "no theorem of the paper: swarm tracking (Remark 11) as derived for this software",
+            Theorem::CompositeLeader => {
+                "no theorem of the paper: agreement with the leader on one vector, y = ż + β z + α q, as derived for this software"
+            }
             Theorem::LeaderObserver => {
                 "no theorem of the paper: an observer of the leader, of the kind that Remark 11 speaks of, as derived for this software"
             }

@@ -24,6 +24,8 @@ pub enum Signal {
     LeaderPosition,
     /// v̂, how fast it believes it to move.
     LeaderVelocity,
+    /// y = ż + β z + α q, which agents that follow a leader by one vector tell.
+    Composite,
     /// s = q̇ − z, or d^(k−1)x/dt^(k−1) − z for a plant of order k; under backstepping the errors of all its steps.
     TrackingError,
     /// τ, or any other input u, after any limit.
@@ -226,6 +228,7 @@ impl Signal {
             Signal::Selection => Row::new("selection", Fixed("1"), Axes, card("Set-valued sign", "ς, within [−1, 1]")).jumps(),
             Signal::LeaderPosition => Row::new("leader_q", Axis(0), Axes, card("Where the leader is thought to be", "x̂, as estimated")),
             Signal::LeaderVelocity => Row::new("leader_dq", Axis(1), Axes, card("How fast the leader is thought to move", "v̂, as estimated")),
+            Signal::Composite => Row::new("composite", Axis(2), Axes, card("What agents tell of the leader", "y = ż + β z + α q")),
             Signal::TrackingError => Row::new("s", Axis(1), Axes, WithAll),
             Signal::Torque => Row::new("tau", Torque, Axes, WithAll).jumps(),
             Signal::Estimate => Row::new("theta_hat", Fixed("SI"), Parameters, WithAll),

@@ -6,6 +6,7 @@ mod bits;
 mod bounded_estimates;
 mod chains;
 mod common;
+mod composite;
 mod controllers;
 mod expression;
 mod expressions;

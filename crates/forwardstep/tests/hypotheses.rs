@@ -208,6 +208,7 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         "backstepping",
         "chains-agree",
         "chains-track",
+        "composite",
         "continuous-thrust",
         "desired-dynamics",
         "leader-observer",

@@ -62,7 +62,7 @@ fn every_combination_is_a_scenario_that_runs() {
             }
         }
         if follows {
-            for graph in [Ring, Path, Star, Complete, Random] {
+            for graph in [Ring, Path, Star, Complete, Random, Switching] {
                 let usual = Template::new(robot.clone());
                 runs(&Template { leader: true, graph, delay: TemplateDelay::None, ..usual });
             }
@@ -93,13 +93,14 @@ fn agents_start_within_their_limits_and_a_random_graph_reaches_everybody() {
 #[test]
 fn options_are_written_down_and_the_scenario_runs() {
     let folder = folder();
-    let cases: [&[&str]; 9] = [
+    let cases: [&[&str]; 10] = [
         &[],
         &["--robot", "point_mass", "--agents", "2", "--order", "1", "--graph", "path", "--delay", "none"],
         &["--robot", "ur5e", "--order", "3", "--exchange", "position", "--graph", "complete"],
         &["--robot", "panda", "--agents", "3", "--delay", "saw_tooth", "--name", "Three \"arms\""],
         &["--robot", "planar_arm", "--exchange", "position-velocity", "--delay", "saw-tooth", "--order", "4"],
         &["--robot", "ship", "--leader", "--agents", "1"],
+        &["--robot", "planar_arm", "--leader", "--graph", "switching", "--agents", "4"],
         &["--robot", "spacecraft"],
         &["--robot", "vehicle", "--graph", "switching", "--delay", "radio", "--agents", "3"],
         &["--robot", "strict-feedback", "--graph", "star"],

@@ -239,6 +239,7 @@ shipped! {
     vehicles_behind_a_leader: "vehicles-behind-a-leader",
     theorem_9: "theorem-9",
     remark_12: "remark-12",
+    leader_by_one_vector: "leader-by-one-vector",
     swarm_tracking: "swarm-tracking",
     framework: "framework",
     vector_plants: "vector-plants",

@@ -4,7 +4,7 @@
 //! its own. It says its position and its velocity like everybody else, and has no neighbours.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{self, Choice, Derived, Sliding, SmoothFollowing};
+use forwardstep_core::reference::{self, Choice, CompositeFollowing, Derived, Sliding, SmoothFollowing};
 
 use crate::closed_loop::{Assembly, SetupError};
 use crate::quantity::{MOST_EVENTS, QuantityError, few, positive};
@@ -48,6 +48,9 @@ pub enum FollowingDesign {
         /// k.
         coupling: f64,
     },
+    /// Everybody agrees with the leader on one vector, y = ż + β z + α q, and tells that alone: differentiable torques over graphs that
+    /// switch and links that delay; our own derivation, see [`forwardstep_core::reference::CompositeFollowing`].
+    Composite,
     /// Everybody estimates where the leader is and how fast it moves, tells its estimates, and follows them; our own derivation, see
     /// [`forwardstep_core::reference::Observer`].
     Observer {
@@ -61,9 +64,9 @@ pub enum FollowingDesign {
 pub struct Following {
     /// What is followed.
     pub leader: Leading,
-    /// (110), (119), (122), swarm tracking or an observer of the leader.
+    /// (110), (119), (122), swarm tracking, one vector to agree on or an observer of the leader.
     pub design: FollowingDesign,
-    /// α: 1/s in (110) and observers, 1/s² in (119) and (122).
+    /// α: 1/s in (110) and observers, else 1/s².
     pub alpha: f64,
     /// β, 1/s; not used by (110) and observers.
     pub beta: f64,
@@ -92,6 +95,7 @@ impl Following {
             FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
                 (Derived::ReferenceAcceleration, self.beta)
             }
+            FollowingDesign::Composite => (Derived::Composite, self.beta),
         };
         Sliding { derived, alpha: self.alpha, beta, gamma: self.gain, choice: self.choice }
     }
@@ -104,7 +108,9 @@ impl Following {
         match self.design {
             FollowingDesign::Continuous => {}
             FollowingDesign::Observer { kappa } => positive(at, "kappa", kappa)?,
-            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => positive(at, "beta", self.beta)?,
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Composite => {
+                positive(at, "beta", self.beta)?
+            }
             FollowingDesign::Swarm { coupling } => {
                 positive(at, "beta", self.beta)?;
                 positive(at, "coupling", coupling)?;
@@ -127,7 +133,7 @@ impl Following {
         match self.design {
             FollowingDesign::Continuous | FollowingDesign::Observer { .. } => [0.0, self.alpha, 1.0, 0.0, 0.0],
             FollowingDesign::Swarm { .. } => [0.0, 0.0, 0.0, 1.0, 0.0],
-            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Composite => {
                 [0.0, self.alpha, self.beta, 1.0, 0.0]
             }
         }
@@ -141,7 +147,7 @@ impl Following {
     }
 }
 
-/// (110), (119), (122), swarm tracking or an observer: everybody follows a leader, the last vertex of the network.
+/// (110), (119), (122), swarm tracking, one vector to agree on or an observer: everybody follows a leader, the last vertex of the network.
 impl ReferenceDynamics for Following {
     fn words(&self) -> ReferenceWords {
         ReferenceWords { name: "following a leader", key: "leader" }
@@ -152,6 +158,7 @@ impl ReferenceDynamics for Following {
             family: ReferenceFamily::Leader,
             exchanges: match self.design {
                 FollowingDesign::Observer { .. } => &[Exchange::Estimates],
+                FollowingDesign::Composite => &[Exchange::Composite],
                 FollowingDesign::Continuous
                 | FollowingDesign::Differentiable
                 | FollowingDesign::WithoutAcceleration
@@ -166,7 +173,10 @@ impl ReferenceDynamics for Following {
     fn free_derivatives(&self, _: usize) -> usize {
         match self.design {
             FollowingDesign::Continuous | FollowingDesign::Observer { .. } => 1,
-            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => 2,
+            FollowingDesign::Differentiable
+            | FollowingDesign::WithoutAcceleration
+            | FollowingDesign::Swarm { .. }
+            | FollowingDesign::Composite => 2,
         }
     }
 
@@ -192,7 +202,7 @@ impl ReferenceDynamics for Following {
             Leading::Agent(index) => {
                 let (agent, agents) = (*index, setup.agents.len());
                 let own = setup.agents.get(agent).ok_or(SetupError::NoAgent { agent, agents })?;
-                leads(own, told && setup.control.is_some())?;
+                leads(own, self.design, setup.control.is_some())?;
                 agent
             }
         };
@@ -215,6 +225,7 @@ impl ReferenceDynamics for Following {
             FollowingDesign::Observer { kappa } => {
                 Dynamics::estimates(reference::Observer::new(agents, sliding, kappa))
             }
+            FollowingDesign::Composite => Dynamics::composite(CompositeFollowing::new(agents, sliding)),
             FollowingDesign::Swarm { coupling } => {
                 Dynamics::position_velocity(SmoothFollowing::swarm(agents, sliding, coupling))
             }
@@ -226,13 +237,22 @@ impl ReferenceDynamics for Following {
 }
 
 /// Whether an agent can lead: it says a position and a velocity for every axis, and, where controllers that sample hear
-/// accelerations, an acceleration, which no sensor measures.
-fn leads(own: &AgentSetup, samples_accelerations: bool) -> Result<(), SetupError> {
+/// accelerations, an acceleration, which no sensor measures. That stands in what it would tell for `composite` too.
+fn leads(own: &AgentSetup, design: FollowingDesign, sampled: bool) -> Result<(), SetupError> {
     let robot = own.robot.interface();
+    let samples_accelerations = sampled
+        && match design {
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+                true
+            }
+            FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => false,
+        };
     let why = if robot.velocity_len != own.robot.axes.len() || robot.position == PositionKind::UnitQuaternion {
         "its robot has not a velocity for every axis"
     } else if samples_accelerations {
         "its acceleration would have to be sampled, which nothing measures; take the design `continuous`, or continuous time"
+    } else if design == FollowingDesign::Composite {
+        "its acceleration would stand in what is told, and nothing measures it; take the design `continuous` or `observer`, or a leader with a motion of its own"
     } else {
         return Ok(());
     };

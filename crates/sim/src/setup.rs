@@ -76,7 +76,8 @@ impl Setup {
             Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
                 Some("reference acceleration")
             }
-            Some(FollowingDesign::Continuous | FollowingDesign::Observer { .. }) | None => None,
+            Some(FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. })
+            | None => None,
         };
         self.exchange.words().iter().copied().chain(told).collect()
     }
@@ -101,6 +102,8 @@ pub enum Exchange {
     Position,
     /// q_j and q̇_j: the family (a5), of which (aa10) is order 1 and (a1) order 2.
     PositionVelocity,
+    /// y_j = ż_j + β z_j + α q_j, in which agents agree with their leader; of the leader itself q̈_0 + β q̇_0 + α q_0.
+    Composite,
     /// x̂_j and v̂_j, where agent j believes the leader to be and how fast it moves; of the leader itself q_0 and q̇_0.
     Estimates,
 }
@@ -111,6 +114,7 @@ impl Exchange {
         match self {
             Exchange::Position => &["position"],
             Exchange::PositionVelocity => &["position", "velocity"],
+            Exchange::Composite => &["composite vector"],
             Exchange::Estimates => &["estimated position of the leader", "estimated velocity of the leader"],
         }
     }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use crate::common::following::{DESIGNS, OBSERVER, arms, masses, observes};
+use crate::common::following::{COMPOSITE, DESIGNS, OBSERVER, arms, masses, observes};
 use crate::common::{balance_residual, column, columns, run, sampled, truth};
 use forwardstep_core::Gain;
 use forwardstep_core::reference::Choice;
@@ -47,13 +47,26 @@ fn thm8_thm9_remark12_everybody_follows_and_no_sign_chatters() {
         }
         let outcome = run(&problem);
         let error = peak(&outcome, Signal::Error, 0.95);
-        assert!(error < 2e-3, "{design:?}: {error}");
+        // Nobody gives way to a robot whose estimate is still wrong where no robot enters what is told.
+        let near = if design == COMPOSITE { 5e-3 } else { 2e-3 };
+        assert!(error < near, "{design:?}: {error}");
         assert!(outcome.statistics.sign_residual.unwrap() < 1e-12);
         assert!(peak(&outcome, Signal::Selection, 0.0) <= 1.0);
     }
 }
 
-/// How far each agent is from the leader in ξ, by rows, for masses that are known and start on their reference: s vanishes for ever.
+/// Masses under the designs that are (110) without s, whatever a robot does or while s ≡ 0. Each differentiator asks for a larger γ.
+fn exactly(design: FollowingDesign) -> Setup {
+    let mut problem = masses(design);
+    assert!(problem.change_reference(|following: &mut Following| {
+        if design == COMPOSITE {
+            following.gain = 4.0;
+        }
+    }));
+    problem
+}
+
+/// How far each agent is from the leader in ξ, or in y, by rows, for masses that are known and start on their reference: s vanishes for ever.
 fn without_s(problem: &mut Setup) -> (Outcome, Vec<[f64; 3]>) {
     problem.solver.method = Method::Adaptive { rtol: 1e-7, atol: 1e-9 };
     problem.time.record_every_s = 0.01;
@@ -67,6 +80,11 @@ fn without_s(problem: &mut Setup) -> (Outcome, Vec<[f64; 3]>) {
         let mut leader = [[0.0; 5]];
         following.motion().unwrap().trajectory.jets(outcome.recording.t_s[row], &mut leader);
         [0, 1, 2].map(|agent| {
+            if following.design == COMPOSITE {
+                let [q, dq, ddq, ..] = leader[0];
+                let y = column(&outcome, agent, Signal::Composite, 0)[row];
+                return (y - (ddq + following.beta * dq + following.alpha * q)).abs();
+            }
             let [x, v] = if observes(following.design) {
                 [Signal::LeaderPosition, Signal::LeaderVelocity]
             } else {
@@ -110,8 +128,8 @@ fn comes_closer(problem: &mut Setup) -> Result<f64, String> {
 /// at least, until nobody is away. ξ has one derivative of the leader more for each differentiator.
 #[test]
 fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain() {
-    for design in [FollowingDesign::Continuous, OBSERVER] {
-        let mut problem = masses(design);
+    for design in [FollowingDesign::Continuous, OBSERVER, COMPOSITE] {
+        let mut problem = exactly(design);
         let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
         let all = (0..3).map(|to| edge(to, 3, 0.6)).chain([edge(1, 0, 1.5), edge(2, 1, 0.7), edge(0, 2, 0.4)]);
         problem.network.schedule = Schedule::fixed(all.collect());
@@ -119,10 +137,19 @@ fn eq_114_to_118_without_s_the_farthest_comes_closer_by_the_margin_of_the_gain()
     }
 }
 
-/// The same of an observer whatever s is: masses that weigh three times what their laws take them for, pushed on the way.
+/// The same of an observer, and of one vector to agree on, whatever s is: masses that weigh three times what their laws take them for,
+/// pushed on the way.
 #[test]
 fn prop_no_robot_enters_an_observer() {
-    let mut problem = masses(OBSERVER);
+    no_robot_enters(masses(OBSERVER));
+}
+
+#[test]
+fn prop_no_robot_enters_the_vector_that_is_told() {
+    no_robot_enters(exactly(COMPOSITE));
+}
+
+fn no_robot_enters(mut problem: Setup) {
     let alone = without_s(&mut problem).1;
     for agent in &mut problem.agents {
         agent.robot.theta[0] *= 3.0;
@@ -182,7 +209,8 @@ fn rooted(draw: &mut impl FnMut() -> f64, delays: usize) -> Vec<Edge> {
 fn prop_over_graphs_that_take_turns_the_farthest_comes_closer_by_the_margin_of_the_gain() {
     for seed in 1..=40 {
         let mut draw = draws(seed);
-        let mut problem = masses(if seed % 2 == 0 { OBSERVER } else { FollowingDesign::Continuous });
+        let designs = [FollowingDesign::Continuous, OBSERVER, COMPOSITE];
+        let mut problem = exactly(designs[seed as usize % 3]);
         problem.time.end_s = 3.0;
         let phases = (0..2 + (3.0 * draw()) as usize)
             .map(|_| Phase { dwell_s: 0.02 + 0.5 * draw() * draw(), edges: rooted(&mut draw, 1) })
@@ -262,7 +290,8 @@ fn prop_with_delays_everybody_comes_as_near_to_the_leader_as_they_let_it() {
     let mut nearest: f64 = 0.0;
     for seed in 1..=20 {
         let mut draw = draws(seed);
-        let mut problem = masses(if seed % 2 == 0 { OBSERVER } else { FollowingDesign::Continuous });
+        let designs = [FollowingDesign::Continuous, OBSERVER, COMPOSITE];
+        let mut problem = exactly(designs[seed as usize % 3]);
         problem.time.end_s = 14.0;
         let longest_s = [0.02 + 0.2 * draw(), 0.02 + 0.1 * draw(), 0.05];
         problem.network.delays = vec![
@@ -460,6 +489,96 @@ fn val_an_observer_agrees_with_an_independent_solver() {
             assert!(apart < 1e-7, "{name} of agent {agent}, row {row}: {apart:e}");
         }
     }
+}
+
+/// Against `validation/composite`, which integrates z and ż and puts y together from them: over links that lead one way, over graphs that
+/// take turns, and over links that delay.
+#[test]
+fn val_one_vector_agrees_with_an_independent_solver() {
+    let truths = truth::read(include_str!("../../../validation/composite/composite.json"));
+    let mut setup = masses(COMPOSITE);
+    let waves = vec![Sinusoid { amplitude: 0.6, rad_per_s: 0.8, phase_rad: 0.3 }];
+    let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.0, waves }]).unwrap();
+    assert!(setup.change_reference(|following: &mut Following| {
+        following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
+    }));
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        agent.robot.theta = vec![[0.8, 1.5, 2.3][k]];
+        agent.law = Arc::new(Adaptive {
+            damping: Gain::Number(3.0),
+            adaptation: Gain::Number(2.0),
+            estimate_start: vec![0.2],
+            bounds: None,
+        });
+        (agent.start.q, agent.start.dq) = (vec![[0.9, -0.7, 0.4][k]], vec![[0.1, -0.3, 0.2][k]]);
+    }
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    let one_way = vec![edge(0, 3, 1.4), edge(1, 0, 0.9), edge(1, 2, 0.5), edge(2, 1, 1.1)];
+    let other = vec![edge(2, 3, 0.8), edge(0, 2, 1.6), edge(1, 0, 0.4)];
+    let phase = |edges: &[Edge]| Phase { dwell_s: 0.7, edges: edges.to_vec() };
+    let teeth = Delay::new(SawTooth { min_s: 0.02, max_s: 0.12, period_s: 0.5, offset_s: 0.0 });
+    let cases = [
+        (Schedule::fixed(one_way.clone()), Delay::constant(0.0)),
+        (Schedule::periodic(vec![phase(&one_way), phase(&other)]), Delay::constant(0.0)),
+        (Schedule::fixed(one_way), teeth),
+    ];
+    assert_eq!(truths.len(), cases.len());
+    for ((schedule, delay), truth) in cases.into_iter().zip(&truths) {
+        (setup.network.schedule, setup.network.delays) = (schedule, vec![delay]);
+        let worst = truth.largest_difference(setup.clone());
+        assert!(worst < 1e-6, "({}): {worst:e}", truth.name);
+    }
+}
+
+/// Over graphs that take turns and links whose delays jump ż goes on without a jump, where that of (122) jumps.
+#[test]
+fn own_one_vector_keeps_reference_accelerations_continuous_where_that_of_122_jumps() {
+    let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
+    let phase = |edges| Phase { dwell_s: 0.5, edges };
+    let jumps = |design, delay: Option<Delay>| {
+        let mut problem = masses(design);
+        problem.network.schedule = Schedule::periodic(vec![
+            phase(vec![edge(0, 3, 1.0), edge(1, 0, 1.5), edge(2, 1, 0.7)]),
+            phase(vec![edge(2, 3, 1.3), edge(1, 2, 0.8), edge(0, 1, 1.1)]),
+        ]);
+        if let Some(delay) = delay {
+            problem.network.delays = vec![delay];
+        }
+        (problem.time.record_every_s, problem.time.end_s) = (1e-3, 3.0);
+        let outcome = run(&problem);
+        let steepest = |values: &&[f64]| values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        columns(&outcome, Signal::Reference(1)).iter().map(steepest).fold(0.0, f64::max)
+    };
+    let late =
+        Delay::new(PiecewiseConstant { times_s: vec![0.0, 0.2], values_s: vec![0.15, 0.02], period_s: Some(0.45) });
+    let (told, late, of_122) =
+        (jumps(COMPOSITE, None), jumps(COMPOSITE, Some(late)), jumps(FollowingDesign::WithoutAcceleration, None));
+    // γ = 2.5 and what is heard move ż by hundredths in a millisecond.
+    assert!(told < 0.03 && late < 0.03 && of_122 > 0.2, "{told} {late} {of_122}");
+}
+
+/// Sampled agents tell the vector that they held a sample ago, and come to the continuous ones as samples come faster.
+#[test]
+fn prop_sampled_agents_that_agree_on_one_vector_come_to_continuous_ones() {
+    let mut setup = arms(COMPOSITE, Choice::Layer { width: 0.05 }, 0.8, 6.0);
+    setup.agents.iter_mut().for_each(|agent| agent.start.dq = vec![0.2, -0.1]);
+    crate::common::assert_first_order(&setup, 400.0);
+    let mut first = Vec::new();
+    setup.time.end_s = 0.005;
+    let setup = sampled(setup, 500.0);
+    simulate_samples(&setup, &mut |_| ControlFlow::Continue(()), &mut |sample| {
+        first.push((sample.agent, sample.sample, sample.message.to_vec()));
+    })
+    .unwrap();
+    let following = setup.following().unwrap();
+    // y(0) = β z(0) + α q(0), with z(0) = q̇(0).
+    for (agent, _, message) in first.iter().filter(|(_, sample, _)| *sample == 0) {
+        for (axis, dq) in [0.2, -0.1].into_iter().enumerate() {
+            let y = following.beta * dq + following.alpha * setup.agents[*agent].start.q[axis];
+            assert!((message[axis] - y).abs() < 1e-12 && message.len() == 2, "{message:?}");
+        }
+    }
+    assert_eq!(first.iter().filter(|(_, sample, _)| *sample == 2).count(), 4);
 }
 
 /// Sampled observers tell what they held a sample ago, and come to the continuous ones as samples come faster.

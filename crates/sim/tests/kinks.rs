@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::following::{DESIGNS, masses};
-use crate::common::{apart, column, columns, consensus_of_masses, last, run, vehicles};
+use crate::common::following::{COMPOSITE, DESIGNS, masses};
+use crate::common::{apart, column, columns, consensus_of_masses, last, run, sampled, vehicles};
 use forwardstep_core::expression::{Expression, KinkError};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::delay::Delay;
@@ -12,7 +12,7 @@ use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::trajectory::{Path, Trajectory, TrajectoryError};
+use forwardstep_sim::trajectory::{Path, Spline, Trajectory, TrajectoryError};
 use forwardstep_sim::{Exchange, Method, Outcome, Setup, SetupError, Signal, ThrustKind, simulate};
 
 fn t() -> Expression {
@@ -82,10 +82,37 @@ fn a_follower_of_a_leader_with_kinks_ends_where_the_run_in_pieces_ends() {
     assert!(gap < 1e-7, "{gap:e}");
     // Reference accelerations of the others hold the leader's velocity, so that theirs must be continuous: its acceleration jumps.
     let (up, down) = (swing() * swing() * 0.6, -(swing() * swing() * 0.6));
-    for design in [DESIGNS[0], DESIGNS[1], DESIGNS[2]] {
+    for design in [DESIGNS[0], DESIGNS[1], DESIGNS[2], COMPOSITE] {
         let gap =
             gap_to_pieces(design, &(swing() * bounce(omega) * 0.6), &[up.clone(), down.clone(), up.clone()], turn_s);
         assert!(gap < 1e-7, "{design:?}: {gap:e}");
+    }
+}
+
+/// A curve through points begins and ends at rest without an acceleration, so that what the leader tells has no jump there, and nothing of it
+/// stays with those who agree on that.
+#[test]
+fn nothing_of_the_last_acceleration_of_a_table_stays_in_what_is_told() {
+    for sample_hz in [None, Some(200.0)] {
+        let mut setup = masses(COMPOSITE);
+        let curve = || Path::Spline(Spline::new(vec![0.5, 2.0, 3.0], vec![0.0, 0.4, 1.0]).unwrap());
+        assert!(setup.change_reference(|following: &mut Following| {
+            let trajectory = Trajectory::new(vec![curve()]).unwrap();
+            for t_s in [0.5, 3.0] {
+                let [mut before, mut after] = [[[0.0; 5]]; 2];
+                trajectory.jets(t_s - 1e-9, &mut before);
+                trajectory.jets(t_s + 1e-9, &mut after);
+                assert!((0..3).all(|k| (before[0][k] - after[0][k]).abs() < 1e-6), "{before:?} {after:?}");
+            }
+            following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
+            following.gain = 20.0;
+        }));
+        setup.time.end_s = 25.0;
+        let outcome = run(&sample_hz.map_or(setup.clone(), |hz| sampled(setup, hz)));
+        for agent in 0..3 {
+            let error = last(&outcome, agent, Signal::Error, 0).abs();
+            assert!(error < 1e-3, "{sample_hz:?}, {agent}: {error}");
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The simulator's sampled controllers, driven from outside by nothing but the public interface: the same bits, for every kind
 //! of system.
 
-use forwardstep_sim::leader::Following;
+use forwardstep_sim::leader::FollowingDesign;
 use forwardstep_sim::reference::Consensus;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -103,11 +103,22 @@ impl<'a> Replay<'a> {
             messages.push(message);
         }
         // An agent that leads has said its own.
-        if let Some(leader) = self.setup.following().and_then(Following::motion) {
+        if let Some((following, leader)) =
+            self.setup.following().and_then(|all| all.motion().map(|motion| (all, motion)))
+        {
             let (m, len) = (leader.trajectory.axes(), messages[0].len());
             let mut jets = vec![[0.0; 5]; m];
             leader.trajectory.jets(t_s, &mut jets);
-            messages.push((0..len).map(|k| jets[k % m][k / m]).collect());
+            let said = |k: usize| {
+                let jet = &jets[k % m];
+                match following.design {
+                    FollowingDesign::Composite => {
+                        following.beta.mul_add(jet[1], following.alpha.mul_add(jet[0], jet[2]))
+                    }
+                    _ => jet[k / m],
+                }
+            };
+            messages.push((0..len).map(said).collect());
         }
         messages
     }
@@ -349,9 +360,16 @@ fn an_agent_that_starts_by_itself_comes_to_the_same_state_as_one_that_was_told()
         for (k, mut recipe) in recipes(&setup).unwrap().into_iter().enumerate() {
             recipe.start = StartState::FirstSample { wanted: setup.agents[k].start.reference.clone() };
             let mut alone = recipe.build().unwrap();
-            let Logged { now_s, measured, degree, sums, .. } = &log[k][0];
-            alone.step(*now_s, measured, Inbox { degree: *degree, sums }).unwrap();
+            let Logged { now_s, measured, degree, sums, message, .. } = &log[k][0];
             let far = |(a, b): (&f64, &f64)| (a - b).abs() > 1e-12 * (1.0 + a.abs());
+            // What it says before it has started is what it will start with.
+            let mut first = vec![0.0; alone.message_len()];
+            alone.message(*now_s, measured, &mut first).unwrap();
+            assert!(
+                first.len() == message.len() && !first.iter().zip(message).any(far),
+                "{name}: {first:?} {message:?}"
+            );
+            alone.step(*now_s, measured, Inbox { degree: *degree, sums }).unwrap();
             let (told, alone) = (told.agents[k].state(), alone.state());
             assert!(told.len() == alone.len() && !told.iter().zip(alone).any(far), "{name}: {told:?} {alone:?}");
         }

@@ -238,7 +238,7 @@ fn refuted(setup: &Setup) -> Option<Counterexample> {
 fn led(setup: &Setup, agent: usize) -> Led {
     let reference = setup.reference_of(agent);
     let heard = match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates => Heard::Velocities,
+        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => Heard::Velocities,
         Exchange::Position if setup.network.coupling.is_linear() => Heard::Positions,
         Exchange::Position => Heard::Coupled,
     };

@@ -7,6 +7,7 @@ use num_traits::{One, Zero};
 
 use super::cascade::Upper;
 use super::case::{Case, ChainStepKind, Led, Step, ThrustStep};
+use super::composite::{self, Composite};
 use super::dynamics::{Dynamics, Measured, Smooth, backstepping, consensus, declared, following, tracking};
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Links, Quantity};
@@ -43,6 +44,9 @@ impl Case<'_> {
             (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
                 if let Some(observer) = self.observer() {
                     return observer::explained(self, &observer);
+                }
+                if let Some(composite) = self.composite() {
+                    return composite::explained(self, &composite);
                 }
                 let Some(dynamics) = self.dynamics() else {
                     return self.silent("Its reference dynamics have too few roots for its plant.");
@@ -94,11 +98,18 @@ impl Case<'_> {
         Some(Observer { alpha: alpha.clone(), gamma: gamma.clone(), kappa: Number::written(*kappa) })
     }
 
+    /// Agents that agree with their leader on one vector.
+    pub(super) fn composite(&self) -> Option<Composite> {
+        let Led::Leader(FollowingDesign::Composite, [alpha, beta, gamma]) = &self.led else { return None };
+        let [alpha, beta, gamma] = [alpha, beta, gamma].map(Clone::clone);
+        Some(Composite { alpha, beta, gamma })
+    }
+
     /// (119), (122) or swarm tracking.
     pub fn smooth(&self) -> Option<Smooth> {
         let Led::Leader(design, [alpha, beta, gamma]) = &self.led else { return None };
         let (by_itself, coupling) = match design {
-            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => return None,
+            FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => return None,
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => (true, 1.0),
             FollowingDesign::Swarm { coupling } => (false, *coupling),
         };
@@ -264,6 +275,14 @@ impl Case<'_> {
         let (base, above, xi) = match design {
             FollowingDesign::Continuous => ("ξ", "", vec![(q, Polynomial::factor(alpha))]),
             FollowingDesign::Observer { .. } => ("ξ", "", vec![(Letter::Observed, Polynomial::factor(alpha))]),
+            FollowingDesign::Composite => (
+                "y",
+                "",
+                vec![
+                    (z, &Polynomial::power(1) + &Polynomial::number(beta.clone())),
+                    (q, Polynomial::number(alpha.clone())),
+                ],
+            ),
             FollowingDesign::Differentiable => ("ξ", "∗", vec![(q, &Polynomial::power(2) + &low(alpha, beta))]),
             FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
                 ("ξ", "∗∗", vec![(z, Polynomial::power(1)), (q, low(alpha, beta))])

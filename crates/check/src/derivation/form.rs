@@ -48,6 +48,8 @@ pub enum Letter {
     Target,
     /// x̂, where an agent believes its leader to be; its derivative is v̂.
     Observed,
+    /// y = ż + β z + α q, which agents tell that agree with their leader on it.
+    Composite,
     /// The integrated variable of (3), (23), (119) and (122).
     Integral,
     /// s.

@@ -19,6 +19,7 @@ mod attitude;
 mod averages;
 pub mod cascade;
 pub mod case;
+mod composite;
 pub mod desired;
 pub mod dynamics;
 mod explained;

@@ -73,6 +73,7 @@ impl Notation {
             }
             Letter::Observed if k == 0 => symbol("x").hat(),
             Letter::Observed => symbol("v").hat().derivative(k - 1),
+            Letter::Composite => symbol("y"),
             Letter::Integral => symbol("η"),
             Letter::Error => symbol("s").above(if self.starred_error { "∗" } else { "" }),
             Letter::Filter => symbol("y"),
@@ -254,6 +255,7 @@ impl Notation {
             | Letter::Deviation
             | Letter::Target
             | Letter::Observed
+            | Letter::Composite
             | Letter::Integral
             | Letter::Error
             | Letter::Filter

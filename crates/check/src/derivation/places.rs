@@ -117,6 +117,7 @@ fn leader(design: &FollowingDesign) -> Places {
         FollowingDesign::WithoutAcceleration => {
             Places { identity: "(aa13)", error: "(5)", reference: "(122)", ..Places::default() }
         }
+        FollowingDesign::Composite => Places { error: "(5)", ..Places::default() },
         FollowingDesign::Observer { .. } => {
             Places { error: "(5)", reference: "named in Remark 11, not printed", ..Places::default() }
         }

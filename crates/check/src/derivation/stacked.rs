@@ -99,6 +99,7 @@ fn variable(quantity: Quantity) -> Option<usize> {
         | Letter::ReferenceDeviation
         | Letter::Target
         | Letter::Observed
+        | Letter::Composite
         | Letter::Integral
         | Letter::Error
         | Letter::Filter

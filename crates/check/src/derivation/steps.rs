@@ -138,8 +138,8 @@ impl Case<'_> {
                 vec![Variable { name: Name::RelativeXi, state: xi, input: one, common: true }]
             }
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => vec![star()],
-            // No robot enters it.
-            FollowingDesign::Observer { .. } => return None,
+            // No robot enters them.
+            FollowingDesign::Composite | FollowingDesign::Observer { .. } => return None,
             FollowingDesign::Swarm { .. } => {
                 vec![Variable::derivative(upper.state, 0), Variable::derivative(upper.state, 1), star()]
             }

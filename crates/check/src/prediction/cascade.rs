@@ -105,7 +105,7 @@ impl CascadeSpread {
                     widen(&mut own, row, psi);
                     let told = match setup.exchange {
                         Exchange::Position => 1,
-                        Exchange::PositionVelocity | Exchange::Estimates => 2,
+                        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => 2,
                     };
                     widen(&mut sent, row, &psi[..told.min(psi.len())]);
                 }

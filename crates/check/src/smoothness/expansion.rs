@@ -173,6 +173,7 @@ impl Affine {
             Dynamics::Position(reference) => evaluate(&**reference, self.axes, own, degree, sums),
             Dynamics::PositionVelocity(reference) => evaluate(&**reference, self.axes, own, degree, sums),
             Dynamics::Estimates(reference) => evaluate(&**reference, self.axes, own, degree, sums),
+            Dynamics::Composite(reference) => evaluate(&**reference, self.axes, own, degree, sums),
         }
     }
 
@@ -181,6 +182,7 @@ impl Affine {
             Dynamics::Position(reference) => (reference.vectors(), 1),
             Dynamics::PositionVelocity(reference) => (reference.vectors(), 2),
             Dynamics::Estimates(reference) => (reference.vectors(), 2),
+            Dynamics::Composite(reference) => (reference.vectors(), 1),
         }
     }
 
@@ -189,6 +191,7 @@ impl Affine {
             Dynamics::Position(reference) => reference.is_affine(),
             Dynamics::PositionVelocity(reference) => reference.is_affine(),
             Dynamics::Estimates(reference) => reference.is_affine(),
+            Dynamics::Composite(reference) => reference.is_affine(),
         }
     }
 

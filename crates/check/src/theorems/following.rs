@@ -1,4 +1,4 @@
-//! Following a leader: Theorems 8 and 9, Remark 12, and an observer of the leader.
+//! Following a leader: Theorems 8 and 9, Remark 12, one vector to agree on, and an observer of the leader.
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
@@ -22,9 +22,9 @@ const LOOKS: u32 = 20_000;
 enum Over {
     /// A fixed graph without delay, as the paper has it; or what neither the paper nor our derivations speak about.
     Fixed,
-    /// (110), or an observer, over graphs that take turns.
+    /// (110), one vector or an observer, over graphs that take turns.
     Turns,
-    /// (110), or an observer, over a fixed graph whose links delay.
+    /// (110), one vector or an observer, over a fixed graph whose links delay.
     Late,
 }
 
@@ -32,12 +32,14 @@ impl Over {
     fn of(setup: &Setup, design: FollowingDesign) -> Over {
         let turns = setup.network.schedule.constant_graph().is_none();
         match design {
-            // With estimates in the place of what is measured an observer is (110) with s = 0.
-            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => match (turns, is_late(setup)) {
-                (true, false) => Over::Turns,
-                (false, true) => Over::Late,
-                (false, false) | (true, true) => Over::Fixed,
-            },
+            // With estimates, or one vector, in the place of what is measured it is (110) with s = 0.
+            FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => {
+                match (turns, is_late(setup)) {
+                    (true, false) => Over::Turns,
+                    (false, true) => Over::Late,
+                    (false, false) | (true, true) => Over::Fixed,
+                }
+            }
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
                 Over::Fixed
             }
@@ -57,15 +59,20 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
         FollowingDesign::Differentiable => Theorem::Theorem9,
         FollowingDesign::WithoutAcceleration => Theorem::Remark12,
         FollowingDesign::Swarm { .. } => Theorem::Swarm,
+        FollowingDesign::Composite => Theorem::CompositeLeader,
         FollowingDesign::Observer { .. } => Theorem::LeaderObserver,
     };
     let torque = match following.design {
         FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
             "the torque is as smooth as the value of the sign that is chosen"
         }
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
-            "the torque is differentiable"
+        FollowingDesign::Composite if over != Over::Fixed => {
+            "the torque is differentiable, through switches and jumps of delays too"
         }
+        FollowingDesign::Differentiable
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => "the torque is differentiable",
     };
     let mut hypotheses = vec![bounded_motion(setup, following), gain(setup, following)];
     hypotheses.extend(match over {
@@ -76,7 +83,7 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     match following.design {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
         // It is integrated as it stands, whatever its weights do. How far it stays behind is known of constant ones.
-        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
+        FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => {
             hypotheses.extend((over == Over::Late).then(|| constant_weights(setup)));
             hypotheses.push(stable(following));
         }
@@ -93,7 +100,9 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
         Over::Fixed | Over::Turns => format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}"),
         Over::Late => {
             let near = match behind(setup, following) {
-                Some(bound) => format!("in the end no |q_i − q_0| exceeds {}", rounded_up(bound)),
+                Some(bound) => {
+                    format!("in the end no |q_i − q_0| exceeds {}", rounded_up(bound * swing(following)))
+                }
                 None => "in the end |q_i − q_0| keeps within a bound in proportion to them and to sup|ξ̇_0|".to_owned(),
             };
             format!("everybody follows {leader} as closely as the delays let it: {near}; {torque}")
@@ -120,7 +129,10 @@ pub(crate) fn slowest_per_s(following: &Following) -> f64 {
     match following.design {
         FollowingDesign::Continuous => alpha,
         FollowingDesign::Observer { kappa } => alpha.min(kappa),
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+        FollowingDesign::Differentiable
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => {
             let half = 0.5 * beta;
             let square = half * half - alpha;
             let slowest = if square > EQUAL * half * half { alpha / (half + square.sqrt()) } else { half };
@@ -134,9 +146,10 @@ pub(crate) fn slowest_per_s(following: &Following) -> f64 {
 pub(crate) fn certainly_slowest_per_s(following: &Following) -> f64 {
     match following.design {
         FollowingDesign::Continuous | FollowingDesign::Observer { .. } => slowest_per_s(following),
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
-            (1.0 - 4e-6) * slowest_per_s(following)
-        }
+        FollowingDesign::Differentiable
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => (1.0 - 4e-6) * slowest_per_s(following),
     }
 }
 
@@ -181,9 +194,10 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
     let alpha_per_s = match following.design {
         FollowingDesign::Continuous | FollowingDesign::Observer { .. } => following.alpha,
         // α is the product of the two roots there.
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
-            (following.alpha * swing).sqrt()
-        }
+        FollowingDesign::Differentiable
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => (following.alpha * swing).sqrt(),
     };
     let left = period_s * following.drive_bound(None) / following.alpha * swing;
     let end_s = setup.time.end_s;
@@ -196,7 +210,10 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
 fn swing(following: &Following) -> f64 {
     match following.design {
         FollowingDesign::Continuous | FollowingDesign::Observer { .. } => 1.0,
-        FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. } => {
+        FollowingDesign::Differentiable
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => {
             let half = 0.5 * following.beta;
             let turns = following.alpha / (half * half) - 1.0;
             // Two equal real roots, but for rounding.

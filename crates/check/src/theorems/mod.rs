@@ -71,7 +71,9 @@ fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) ->
     hypotheses.extend(own);
     hypotheses.extend(manipulability(setup));
     match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates => hypotheses.push(theorem_3::common_first_root(setup)),
+        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
+            hypotheses.push(theorem_3::common_first_root(setup))
+        }
         Exchange::Position => {}
     }
     let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));

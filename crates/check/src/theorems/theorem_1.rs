@@ -11,7 +11,7 @@ use crate::theorem::Theorem;
 
 pub(super) fn claim(setup: &Setup) -> Claim {
     let theorem = match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates => Theorem::Theorem1,
+        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => Theorem::Theorem1,
         Exchange::Position => Theorem::Remark3,
     };
     Claim { theorem, promises: agreement(setup, orders(setup).0) }

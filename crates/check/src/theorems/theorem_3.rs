@@ -14,7 +14,9 @@ pub(super) fn claim(setup: &Setup) -> Claim {
         _ if least < most => Theorem::OwnOrders { exchange: setup.exchange, least, most },
         Exchange::PositionVelocity if most == 1 => Theorem::FirstOrder,
         Exchange::PositionVelocity if most == 2 && same_roots(setup) => Theorem::Theorem2,
-        Exchange::PositionVelocity | Exchange::Estimates => Theorem::Theorem3Velocities { order: most },
+        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
+            Theorem::Theorem3Velocities { order: most }
+        }
         Exchange::Position => Theorem::Theorem3Positions { order: most },
     };
     Claim { theorem, promises: agreement(setup, least) }

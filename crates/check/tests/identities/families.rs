@@ -172,7 +172,7 @@ fn eq_identities_of_aa10_a1_a5_and_24_hold_along_real_runs_of_any_order() {
                 for (axis, row) in (0..2).flat_map(|axis| ROWS.map(|row| (axis, row))) {
                     let jets = |agent: usize, row: usize| match exchange {
                         Exchange::Position => consensus_jets::<Position>(&setup, &outcome, [agent, axis, row]),
-                        Exchange::PositionVelocity | Exchange::Estimates => {
+                        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                             consensus_jets::<PositionVelocity>(&setup, &outcome, [agent, axis, row])
                         }
                     };
@@ -227,7 +227,7 @@ fn eq_30_and_a6_hold_along_real_runs_without_s() {
                 let jets = |agent: usize, row: usize| {
                     let jets = match exchange {
                         Exchange::Position => consensus_jets::<Position>(&setup, &outcome, [agent, 0, row]),
-                        Exchange::PositionVelocity | Exchange::Estimates => {
+                        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                             consensus_jets::<PositionVelocity>(&setup, &outcome, [agent, 0, row])
                         }
                     };
@@ -288,7 +288,7 @@ fn eq_identities_of_3_23_and_31_hold_along_real_runs() {
                             let law = PureIntegral::<Position>::new(design).unwrap();
                             integrated_jets(&law, &setup, &outcome, place, &told, &[])
                         }
-                        Exchange::PositionVelocity | Exchange::Estimates => {
+                        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                             let law = PureIntegral::<PositionVelocity>::new(design).unwrap();
                             integrated_jets(&law, &setup, &outcome, place, &told, &[])
                         }
@@ -306,7 +306,7 @@ fn eq_identities_of_3_23_and_31_hold_along_real_runs() {
 
 #[test]
 fn eq_identities_of_110_119_122_and_swarms_hold_along_real_runs() {
-    use FollowingDesign::{Continuous, Differentiable, Observer, Swarm, WithoutAcceleration};
+    use FollowingDesign::{Composite, Continuous, Differentiable, Observer, Swarm, WithoutAcceleration};
     let wave = |phase_rad| Path::Sinusoids {
         offset: 0.2,
         waves: vec![Sinusoid { amplitude: 0.5, rad_per_s: 2.0, phase_rad }],
@@ -354,7 +354,7 @@ fn eq_identities_of_110_119_122_and_swarms_hold_along_real_runs() {
                             let law = SmoothFollowing::swarm(1, following.sliding(), coupling);
                             integrated_jets(&law, &setup, &outcome, place, &told, &[sign])
                         }
-                        Observer { .. } => panic!("no cascade"),
+                        Composite | Observer { .. } => panic!("no cascade"),
                         Differentiable | WithoutAcceleration => {
                             let law = SmoothFollowing::new(1, following.sliding());
                             integrated_jets(&law, &setup, &outcome, place, &told, &[sign])

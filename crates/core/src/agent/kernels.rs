@@ -68,10 +68,9 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         }
         let Some(h) = passed_s else { return Ok(()) };
         let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();
-        let [first, second] = if <F::Exchange as Exchange>::MEASURED {
-            [&held.q[..], &held.dq[..]]
-        } else {
-            [&state[..m], &state[m..2 * m]]
+        let [first, second] = match <F::Exchange as Exchange>::HELD {
+            None => [&held.q[..], &held.dq[..]],
+            Some(held) => [held, held + 1].map(|block| state.get(block * m..(block + 1) * m).unwrap_or_default()),
         };
         let own = [first, second, &out.told[..]];
         let inputs = SlidingInputs { own, degree: &held.degree, sums: [channel(0), channel(1), channel(2)] };

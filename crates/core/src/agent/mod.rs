@@ -246,23 +246,21 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         &self.out.told
     }
 
-    /// Turns q and q̇ as they are measured, an entry per axis each, into a message. Where messages are not measured it becomes the
-    /// first blocks of the reference state as of the last sample; before the first, where the estimates will start:
-    /// q and what is wanted of z(0).
+    /// Turns q and q̇ as they are measured, an entry per axis each, into a message. Where messages are not measured it becomes
+    /// blocks of the reference state as of the last sample; before the first, what they will start with: x̂ = q and what is wanted of
+    /// z(0), or y of an agent at rest unless z(0) is wanted.
     ///
     /// # Errors
     /// [`LengthError`] when it has not as many entries as a message that is not measured.
     pub fn tell(&self, message: &mut [f64]) -> Result<(), LengthError> {
-        if <F::Exchange as Exchange>::MEASURED {
-            return Ok(());
-        }
+        let Some(held) = <F::Exchange as Exchange>::HELD else { return Ok(()) };
         let m = self.held.q.len();
         let told = <F::Exchange as Exchange>::CHANNELS * m;
         LengthError::check("message", told, message.len())?;
         if self.started {
-            message.copy_from_slice(&self.state[..told]);
-        } else if let Some(wanted) = self.wanted.first() {
-            message[m..].copy_from_slice(wanted);
+            message.copy_from_slice(&self.state[held * m..held * m + told]);
+        } else {
+            self.reference.foretell(&self.wanted, message);
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! What agents tell each other, as types: a design that must not see its neighbours' velocities cannot read them.
 
+use crate::signal::Signal;
 use crate::{LengthError, Scalar};
 
 /// What an agent transmits and what the sums over its neighbours look like on the receiving side.
@@ -7,12 +8,15 @@ use crate::{LengthError, Scalar};
 /// Agents transmit raw measurements, or blocks of their reference state; the receiver applies its own coefficients. A sender's
 /// message of m axes has [`Exchange::CHANNELS`] · m numbers.
 pub trait Exchange: Copy + Send + Sync + 'static {
-    /// How many vectors of ℝᵐ a message holds.
-    const CHANNELS: usize;
+    /// What a message holds, vectors of ℝᵐ.
+    const SIGNALS: &'static [Signal];
 
-    /// Whether a message is measured: q, or q and q̇. Otherwise it is the first [`Exchange::CHANNELS`] blocks of the sender's
-    /// reference state.
-    const MEASURED: bool;
+    /// How many these are.
+    const CHANNELS: usize = Self::SIGNALS.len();
+
+    /// Where a message stands: `None` where it is measured, q, or q and q̇. Otherwise it is [`Exchange::CHANNELS`] blocks of the
+    /// sender's reference state, from this one on.
+    const HELD: Option<usize>;
 
     /// Σ_j w_ij · message_j(t − T_ij), one column per axis and channel.
     type Sums<'a>: Copy + core::fmt::Debug;
@@ -21,6 +25,11 @@ pub trait Exchange: Copy + Send + Sync + 'static {
     ///
     /// `None` when the buffer is too short.
     fn split(buffer: &[f64], channel: usize) -> Option<Self::Sums<'_>>;
+
+    /// The block of the reference state that is `signal`, if a message holds it as such.
+    fn held(signal: Signal) -> Option<usize> {
+        Some(Self::HELD? + Self::SIGNALS.iter().position(|held| *held == signal)?)
+    }
 
     /// Checks that every channel has `channel` entries.
     ///
@@ -76,6 +85,11 @@ pub struct PositionVelocity;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Estimates;
 
+/// Transmits y_j, in which a reference velocity, its derivative and a position stand together: one number per axis, and no
+/// measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Composite;
+
 /// Σ_j w_ij q_j(t − T_ij).
 ///
 /// A design that hears positions only has nothing else to read:
@@ -115,9 +129,16 @@ pub struct EstimateSums<'a> {
     pub v: &'a [f64],
 }
 
+/// Σ_j w_ij y_j(t − T_ij).
+#[derive(Clone, Copy, Debug)]
+pub struct CompositeSums<'a> {
+    /// One column per axis.
+    pub y: &'a [f64],
+}
+
 impl Exchange for Position {
-    const CHANNELS: usize = 1;
-    const MEASURED: bool = true;
+    const SIGNALS: &'static [Signal] = &[Signal::Position];
+    const HELD: Option<usize> = None;
     type Sums<'a> = PositionSums<'a>;
 
     #[inline(always)]
@@ -142,8 +163,8 @@ impl Exchange for Position {
 }
 
 impl Exchange for PositionVelocity {
-    const CHANNELS: usize = 2;
-    const MEASURED: bool = true;
+    const SIGNALS: &'static [Signal] = &[Signal::Position, Signal::Velocity];
+    const HELD: Option<usize> = None;
     type Sums<'a> = PositionVelocitySums<'a>;
 
     #[inline(always)]
@@ -170,8 +191,8 @@ impl Exchange for PositionVelocity {
 }
 
 impl Exchange for Estimates {
-    const CHANNELS: usize = 2;
-    const MEASURED: bool = false;
+    const SIGNALS: &'static [Signal] = &[Signal::LeaderPosition, Signal::LeaderVelocity];
+    const HELD: Option<usize> = Some(0);
     type Sums<'a> = EstimateSums<'a>;
 
     #[inline(always)]
@@ -194,5 +215,31 @@ impl Exchange for Estimates {
     #[inline(always)]
     fn term(sums: EstimateSums<'_>, k: usize, alpha_0: f64, alpha_0_over_kappa_0: f64) -> f64 {
         Scalar::mul_add(alpha_0, sums.x[k], alpha_0_over_kappa_0 * sums.v[k])
+    }
+}
+
+impl Exchange for Composite {
+    const SIGNALS: &'static [Signal] = &[Signal::Composite];
+    const HELD: Option<usize> = Some(1);
+    type Sums<'a> = CompositeSums<'a>;
+
+    #[inline(always)]
+    fn split(buffer: &[f64], channel: usize) -> Option<CompositeSums<'_>> {
+        Some(CompositeSums { y: buffer.get(..channel)? })
+    }
+
+    #[inline(always)]
+    fn check(sums: CompositeSums<'_>, channel: usize) -> Result<(), LengthError> {
+        LengthError::check("sum of composite vectors heard", channel, sums.y.len())
+    }
+
+    #[inline(always)]
+    fn position(sums: CompositeSums<'_>, k: usize) -> f64 {
+        sums.y[k]
+    }
+
+    #[inline(always)]
+    fn term(sums: CompositeSums<'_>, k: usize, alpha_0: f64, _: f64) -> f64 {
+        alpha_0 * sums.y[k]
     }
 }

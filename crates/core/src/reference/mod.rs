@@ -5,12 +5,14 @@
 //! - `pure_integral`: (3) and (23), which contain q̈ and are realised by their integral.
 //! - `backstepping`: (aa6), the baseline, which differentiates.
 //! - `following`: (110), (119), (122), which follow a leader.
+//! - `composite`: a leader behind graphs that switch and links that delay, with differentiable torques; not from the paper.
 //! - `observer`: a rival of (110), which hears estimates of where the leader is.
 //! - `per_axis`: those of one's own, from one function.
 //! - `sliding`: the set-valued sign in them.
 //! - `exchange`: what agents tell each other.
 
 mod backstepping;
+mod composite;
 mod consensus;
 mod desired;
 mod exchange;
@@ -23,11 +25,13 @@ mod roots;
 mod sliding;
 
 pub use backstepping::{Backstepping, BacksteppingError};
+pub use composite::CompositeFollowing;
 pub use consensus::Consensus;
 pub(crate) use desired::Place;
 pub use desired::{Desired, DesiredDynamics, DesiredError, WrittenIn};
 pub use exchange::{
-    EstimateSums, Estimates, Exchange, Heard, Position, PositionSums, PositionVelocity, PositionVelocitySums,
+    Composite, CompositeSums, EstimateSums, Estimates, Exchange, Heard, Position, PositionSums, PositionVelocity,
+    PositionVelocitySums,
 };
 pub use following::{Following, SmoothFollowing};
 pub use observer::Observer;
@@ -39,6 +43,7 @@ pub use sliding::{Choice, Derived, Sliding, SlidingInputs, saturated};
 
 use alloc::boxed::Box;
 use alloc::sync::Arc;
+use alloc::vec::Vec;
 
 use crate::LengthError;
 
@@ -113,6 +118,10 @@ pub trait Reference: Send + Sync + 'static {
         heard: Heard<'_, Self::Exchange>,
         state: &mut [f64],
     ) -> Result<(), LengthError>;
+
+    /// Turns the message of one agent that has not started, which is measured as far as it has room, into what its state will tell
+    /// when it starts from there with z(0), ż(0), … as `wanted`. Not called where messages are measured.
+    fn foretell(&self, _wanted: &[Vec<f64>], _message: &mut [f64]) {}
 }
 
 /// Which dynamics, known at run time only, behind a pointer of its own or a shared one.
@@ -161,6 +170,10 @@ macro_rules! behind {
                 state: &mut [f64],
             ) -> Result<(), LengthError> {
                 (**self).start(axes, measured, given, heard, state)
+            }
+
+            fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+                (**self).foretell(wanted, message)
             }
         }
     };

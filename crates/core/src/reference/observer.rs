@@ -40,6 +40,8 @@
 //! Two more vectors of state are held, and what is told is no measurement: a sensor that sees a neighbour does not replace the
 //! radio. The sign is in ż in both, so that both torques are as smooth as the chosen ς.
 
+use alloc::vec::Vec;
+
 use super::sliding::Sliding;
 use super::{EstimateSums, Estimates, Exchange, Heard, Measured, Reference, ReferenceOut, check};
 use crate::{LengthError, Scalar};
@@ -157,5 +159,13 @@ impl Reference for Observer {
         state[block..2 * block].copy_from_slice(&given[..block]);
         state[2 * block..].fill(0.0);
         Ok(())
+    }
+
+    // x̂(0) = q(0), which stands there, and v̂(0) = z(0).
+    fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+        let velocity = message.len() / 2;
+        for (v, wanted) in message[velocity..].iter_mut().zip(wanted.first().into_iter().flatten()) {
+            *v = *wanted;
+        }
     }
 }

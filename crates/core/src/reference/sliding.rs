@@ -1,6 +1,6 @@
 //! The set-valued sign of the designs that follow a leader: what it is taken of, and how a value of it is chosen.
 //!
-//! With ξ_i = a_i + β q̇_i + α q_i, where a is nothing (and β = 1) in (110), q̈ in (119) and ż in (122),
+//! With ξ_i = a_i + β q̇_i + α q_i, where a is nothing (and β = 1) in (110), q̈ in (119) and ż in (122), or what is told as it stands,
 //!
 //! ```text
 //! e_i = Σ_j w_ij (ξ_i − ξ_j)        ς_i ∈ Sgn(e_i): 1 for e_i > 0, −1 for e_i < 0, any of [−1, 1] for e_i = 0, axis by axis
@@ -30,6 +30,8 @@ pub enum Derived {
     Acceleration,
     /// ż: (122).
     ReferenceAcceleration,
+    /// Nothing is left to compose: ξ is y, the one vector that is told.
+    Composite,
 }
 
 /// How a value of the sign is chosen.
@@ -76,10 +78,10 @@ pub struct Sliding {
 }
 
 /// What e is made of on columns: own values and sums of what was heard, `axes · agents` entries each. The last of either is
-/// not read when there is nothing derived.
+/// not read when there is nothing derived, and of [`Derived::Composite`] only the first, which is y.
 #[derive(Clone, Copy, Debug)]
 pub struct SlidingInputs<'a> {
-    /// q, q̇, a of everybody.
+    /// q, q̇, a of everybody; or y.
     pub own: [&'a [f64]; 3],
     /// Σ_j w_ij, one entry per agent.
     pub degree: &'a [f64],
@@ -90,7 +92,19 @@ pub struct SlidingInputs<'a> {
 impl Sliding {
     /// Vectors that are transmitted besides what is measured.
     pub fn told(&self) -> usize {
-        usize::from(self.derived != Derived::Nothing)
+        match self.derived {
+            Derived::Acceleration | Derived::ReferenceAcceleration => 1,
+            Derived::Nothing | Derived::Composite => 0,
+        }
+    }
+
+    /// Vectors that ξ is composed of.
+    fn parts(&self) -> usize {
+        match self.derived {
+            Derived::Composite => 1,
+            Derived::Nothing => 2,
+            Derived::Acceleration | Derived::ReferenceAcceleration => 3,
+        }
     }
 
     /// e of everybody.
@@ -101,16 +115,17 @@ impl Sliding {
         let SlidingInputs { own, degree, sums } = inputs;
         let n = degree.len();
         LengthError::check("argument of the sign", axes * n, e.len())?;
-        for column in own.iter().chain(&sums).take(if self.told() > 0 { 6 } else { 2 }) {
+        for column in own.iter().take(self.parts()).chain(sums.iter().take(self.parts())) {
             LengthError::check("what the sign is taken of", axes * n, column.len())?;
         }
-        LengthError::check("what the sign is taken of", axes * n, sums[0].len().min(sums[1].len()))?;
-        let (alpha, beta) = (self.alpha, self.beta);
-        let derived = self.derived != Derived::Nothing;
+        let (alpha, beta, derived) = (self.alpha, self.beta, self.derived);
         for (k, e) in e.iter_mut().enumerate() {
-            let xi = |[q, dq, a]: [&[f64]; 3]| {
-                let xi = Scalar::mul_add(alpha, q[k], beta * dq[k]);
-                if derived { xi + a[k] } else { xi }
+            let xi = |[q, dq, a]: [&[f64]; 3]| match derived {
+                Derived::Composite => q[k],
+                Derived::Nothing => Scalar::mul_add(alpha, q[k], beta * dq[k]),
+                Derived::Acceleration | Derived::ReferenceAcceleration => {
+                    Scalar::mul_add(alpha, q[k], beta * dq[k]) + a[k]
+                }
             };
             // d ξ_i − Σ_j w_ij ξ_j.
             *e = degree[k % n] * xi(own) - xi(sums);

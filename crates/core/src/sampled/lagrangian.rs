@@ -162,10 +162,7 @@ where
             Signal::Reference(r) if usize::from(r) < self.derivatives => {
                 reference.get(usize::from(r) * m..(usize::from(r) + 1) * m)
             }
-            Signal::LeaderPosition | Signal::LeaderVelocity if !F::Exchange::MEASURED => {
-                let first = if signal == Signal::LeaderPosition { 0 } else { m };
-                reference.get(first..first + m)
-            }
+            signal if let Some(block) = F::Exchange::held(signal) => reference.get(block * m..(block + 1) * m),
             Signal::Selection if self.sliding => reference.get(reference.len().saturating_sub(m)..),
             Signal::TrackingError => Some(last.s),
             Signal::Torque => Some(self.standing.command()),

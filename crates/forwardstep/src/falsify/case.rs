@@ -91,6 +91,7 @@ pub(crate) enum Design {
     Differentiable,
     WithoutAcceleration,
     Swarm,
+    Composite,
     Observer,
 }
 
@@ -265,8 +266,14 @@ fn agree(rng: &mut ChaCha8Rng) -> Course {
 /// Any kind under any course that is made for it.
 fn any(rng: &mut ChaCha8Rng) -> (System, Course) {
     let track = Course::Track { rate: hundredths(rng, 0.2, 1.5) };
-    let designs =
-        [Design::Continuous, Design::Differentiable, Design::WithoutAcceleration, Design::Swarm, Design::Observer];
+    let designs = [
+        Design::Continuous,
+        Design::Differentiable,
+        Design::WithoutAcceleration,
+        Design::Swarm,
+        Design::Composite,
+        Design::Observer,
+    ];
     let follow = Course::Follow { design: pick(rng, &designs), margin: hundredths(rng, 1.05, 2.0), moves: true };
     let positions = Course::Agree { velocities: false };
     let thrust = pick(rng, &[Thrust::Continuous, Thrust::Differentiable, Thrust::Adaptive, Thrust::ByAcceleration]);

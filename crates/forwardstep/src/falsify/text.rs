@@ -215,6 +215,7 @@ fn led(design: Design, margin: f64, roots: &[f64]) -> String {
         Design::Differentiable => ("differentiable", 0.4 * alpha + 0.32 * beta + 0.256, ""),
         Design::WithoutAcceleration => ("without_acceleration", 0.4 * alpha + 0.32 * beta + 0.256, ""),
         Design::Swarm => ("swarm", 0.256, "coupling = 60\n"),
+        Design::Composite => ("composite", 0.4 * alpha + 0.32 * beta + 0.256, ""),
         Design::Observer => ("observer", 0.4 * first + 0.32, ""),
     };
     let gain = margin * drive;

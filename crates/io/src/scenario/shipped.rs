@@ -59,6 +59,7 @@ pub const SHIPPED_SCENARIOS: &[ShippedScenario] = &shipped![
     "vehicles-behind-a-leader",
     "theorem-9",
     "remark-12",
+    "leader-by-one-vector",
     "swarm-tracking",
     "framework",
     "vector-plants",

@@ -66,6 +66,16 @@ fn designs_signs_and_motions_are_read() {
     let following = setup.following().unwrap();
     assert_eq!((following.design, following.alpha), (FollowingDesign::Observer { kappa: 0.5 }, 3.0));
     assert_eq!(setup.exchange, Exchange::Estimates);
+    // One vector has α and β of two roots, a pair, or as they are stated, and is what is told.
+    let told = two.replace("without_acceleration", "composite");
+    let paired = pair.replace("without_acceleration", "composite");
+    let stated = told.replace("roots_per_s = [1.0, 3.0]", "alpha = 3\nbeta = 4");
+    for (text, wanted) in [(&told, (3.0, 4.0)), (&paired, (4.25, 1.0)), (&stated, (3.0, 4.0))] {
+        let setup = read(text).unwrap().setup;
+        let following = setup.following().unwrap();
+        assert_eq!((following.design, setup.exchange), (FollowingDesign::Composite, Exchange::Composite));
+        assert_eq!((following.alpha, following.beta), wanted);
+    }
     for (sign, choice) in [
         ("\"implicit\"", Choice::Implicit),
         ("\"explicit\"", Choice::Explicit),

@@ -253,7 +253,7 @@ fn interface(robot: &RobotSetup, estimates: bool) -> Option<Interface> {
     robot.kind.lagrangian()?;
     Some(Interface {
         measures: &["position", "velocity"],
-        exchanges: &[Exchange::Position, Exchange::PositionVelocity, Exchange::Estimates],
+        exchanges: &[Exchange::Position, Exchange::PositionVelocity, Exchange::Estimates, Exchange::Composite],
         follows: &[
             ReferenceFamily::Consensus,
             ReferenceFamily::PureIntegral,

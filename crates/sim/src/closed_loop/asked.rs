@@ -1,5 +1,7 @@
 //! What the reference dynamics of a population ask for at one instant: z, ż, the rate of their state, and the signs in it.
 
+use std::ops::Range;
+
 use forwardstep_core::LengthError;
 use forwardstep_core::reference::{Derived, Heard, Measured, ReferenceOut, SlidingInputs, saturated};
 
@@ -23,16 +25,18 @@ pub(super) fn argument<X: Transmits>(
     e: &mut [f64],
 ) -> Result<(), LengthError> {
     let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
-    let channels = X::CHANNELS;
-    LengthError::check("sums heard", channels * block, inputs.sums.len().min(channels * block))?;
-    LengthError::check("sums of positions and velocities", 2, channels.min(2))?;
-    let first = if X::MEASURED { 0 } else { l.reference };
-    let own = [&x[first..first + block], &x[first + block..first + 2 * block], told[0]];
-    let sums = [&inputs.sums[..block], &inputs.sums[block..2 * block], told[1]];
+    let first = X::HELD.map_or(0, |held| l.reference + held * block);
+    // Of a channel that is not heard nothing is read.
+    let channel = |columns: &'_ [f64], c: usize| -> Range<usize> {
+        if c < X::CHANNELS { c * block..(c + 1) * block } else { columns.len()..columns.len() }
+    };
+    let (held, heard) = (&x[first..], inputs.sums);
+    let own = [&held[channel(held, 0)], &held[channel(held, 1)], told[0]];
+    let sums = [&heard[channel(heard, 0)], &heard[channel(heard, 1)], told[1]];
     sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
 }
 
-/// A sign that is a function of the instant and taken of what is heard alone leans on ż, before the torque.
+/// A sign that is a function of the instant and taken of what is heard alone leans on ż or on the rate of y, before the torque.
 pub(super) fn add_sign_terms_now<X: Transmits>(
     reference: &AnyReference<X>,
     layer: &mut Option<Layer>,
@@ -43,15 +47,19 @@ pub(super) fn add_sign_terms_now<X: Transmits>(
     d_state: &mut [f64],
 ) -> Result<(), LengthError> {
     let (Some(layer), Some(sliding)) = (layer, reference.sliding()) else { return Ok(()) };
-    if sliding.derived != Derived::Nothing {
-        return Ok(());
-    }
+    let leans_on_dz = match sliding.derived {
+        Derived::Nothing => true,
+        Derived::Composite => false,
+        Derived::Acceleration | Derived::ReferenceAcceleration => return Ok(()),
+    };
     argument(reference, l, x, inputs, [&[], &[]], &mut layer.selection)?;
     // The block that leans on the sign stands before that of the sign.
     let leaning = d_state.len() - 2 * l.block();
     for (k, selection) in layer.selection.iter_mut().enumerate() {
         *selection = saturated(*selection, layer.width);
-        dz[k] -= sliding.gamma * *selection;
+        if leans_on_dz {
+            dz[k] -= sliding.gamma * *selection;
+        }
         d_state[leaning + k] -= sliding.gamma * *selection;
     }
     Ok(())

@@ -7,7 +7,7 @@ use std::ops::Range;
 use forwardstep_core::agent::Clipped;
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::plant::total;
-use forwardstep_core::reference::{Estimates, Position, PositionVelocity};
+use forwardstep_core::reference::{Composite, Estimates, Position, PositionVelocity};
 use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
@@ -25,7 +25,7 @@ use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
 use crate::engine::{Heard, Port, Refuted};
-use crate::leader::Following;
+use crate::leader::{Following, FollowingDesign};
 use crate::recording::{ClippedSamples, Drive, GainRates, SampleTaken, Signal};
 use crate::setup::{Control, Exchange, Setup};
 
@@ -87,6 +87,7 @@ impl<'a> ClosedLoop<'a> {
             Exchange::Position => Self::with_exchange::<Position>(setup),
             Exchange::PositionVelocity => Self::with_exchange::<PositionVelocity>(setup),
             Exchange::Estimates => Self::with_exchange::<Estimates>(setup),
+            Exchange::Composite => Self::with_exchange::<Composite>(setup),
         }
     }
 
@@ -135,11 +136,18 @@ impl<'a> ClosedLoop<'a> {
             });
             placed += n;
         }
+        // An agent that leads tells where it is.
+        closed_loop.leader = setup.leader().and_then(|vertex| closed_loop.ports.get(vertex)).copied();
         if let Some(leader) = following.and_then(Following::motion) {
-            let guide = Box::new(Guide::new(leader, placed, setup.time.end_s)?);
+            let told = following.filter(|following| following.design == FollowingDesign::Composite);
+            let composite = told.map(|following| [following.alpha, following.beta]);
+            let guide = Box::new(Guide::new(leader, composite, placed, setup.time.end_s)?);
             let first = closed_loop.start.len();
             guide.append_start(&setup.agents, &mut closed_loop.start);
-            closed_loop.ports[placed] = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
+            let told = first + guide.message();
+            let place = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
+            closed_loop.leader = Some(place);
+            closed_loop.ports[placed] = Port { state: told, ..place };
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + 1,
@@ -149,9 +157,8 @@ impl<'a> ClosedLoop<'a> {
                 columns: guide,
             });
         }
-        closed_loop.leader = setup.leader().map(|vertex| closed_loop.ports[vertex]);
         let mut heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
-        if !X::MEASURED {
+        if X::HELD.is_some() {
             // What is told is a part of what has just been started.
             heard = closed_loop.heard_at_start(setup, X::CHANNELS * axes);
         }

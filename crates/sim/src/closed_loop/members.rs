@@ -2,7 +2,7 @@
 
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::total;
-use forwardstep_core::reference::{Estimates, Position, PositionVelocity};
+use forwardstep_core::reference::{Composite, Estimates, Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, ResolvedGain, Vectors};
 
@@ -46,6 +46,7 @@ pub(super) fn batch<M: RobotModel>(model: &M, assembly: &Assembly<'_>) -> Result
         Exchange::Position => boxed::<M::Kernel, Position>(model.kernel(), assembly),
         Exchange::PositionVelocity => boxed::<M::Kernel, PositionVelocity>(model.kernel(), assembly),
         Exchange::Estimates => boxed::<M::Kernel, Estimates>(model.kernel(), assembly),
+        Exchange::Composite => boxed::<M::Kernel, Composite>(model.kernel(), assembly),
     }
 }
 

@@ -172,8 +172,9 @@ where
         r.q.iter().copied().for_each(&mut put);
         w.dq.iter().chain(&w.z).chain(&w.dz).for_each(|v| put(v.lane(lane)));
         (2 * l.m..self.reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
-        if !X::MEASURED {
-            (0..2 * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        if let Some(held) = X::HELD {
+            let first = l.reference + held * l.block();
+            (0..X::CHANNELS * l.m).for_each(|column| put(x[first + column * l.n + member]));
         }
         if self.reference.sliding().is_some() {
             let held = &x[l.theta_hat - l.block()..l.theta_hat];
@@ -220,7 +221,7 @@ where
     }
 
     fn message(&self) -> usize {
-        if X::MEASURED { 0 } else { self.robots.layout.reference }
+        X::HELD.map_or(0, |held| self.robots.layout.reference + held * self.robots.layout.block())
     }
 
     fn append_start(&self, all: &[AgentSetup], x: &mut Vec<f64>) {
@@ -384,9 +385,8 @@ where
         for r in 0..self.reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
         }
-        if !X::MEASURED {
-            axes(Signal::LeaderPosition, l.m);
-            axes(Signal::LeaderVelocity, l.m);
+        if X::HELD.is_some() {
+            X::SIGNALS.iter().for_each(|held| axes(*held, l.m));
         }
         if self.reference.sliding().is_some() {
             axes(Signal::Selection, l.m);
@@ -419,11 +419,10 @@ where
             (Signal::Estimate, column(l.theta_hat))
         } else if self.selection().is_some_and(|selection| state >= selection.start) {
             (Signal::Selection, column(l.theta_hat - l.block()))
-        } else if state >= l.reference && !X::MEASURED {
-            let column = column(l.reference);
-            (if column < l.m { Signal::LeaderPosition } else { Signal::LeaderVelocity }, column % l.m)
         } else if state >= l.reference {
-            (Signal::Reference((column(l.reference) / l.m) as u8), column(l.reference) % l.m)
+            let (block, axis) = (column(l.reference) / l.m, column(l.reference) % l.m);
+            let held = X::HELD.and_then(|held| X::SIGNALS.get(block.checked_sub(held)?));
+            (held.copied().unwrap_or(Signal::Reference(block as u8)), axis)
         } else if state >= l.dq {
             (Signal::Velocity, column(l.dq))
         } else {

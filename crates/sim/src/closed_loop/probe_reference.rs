@@ -1,7 +1,7 @@
 //! What reference dynamics from outside say of themselves, tried at random states.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{Estimates, Heard, Measured, Position, PositionVelocity, ReferenceOut};
+use forwardstep_core::reference::{Composite, Estimates, Heard, Measured, Position, PositionVelocity, ReferenceOut};
 
 use super::assembly::Assembly;
 use super::error::SetupError;
@@ -25,6 +25,7 @@ pub fn probe_reference(setup: &Setup) -> Result<Probe, SetupError> {
         Exchange::Position => probe::<Position>(setup),
         Exchange::PositionVelocity => probe::<PositionVelocity>(setup),
         Exchange::Estimates => probe::<Estimates>(setup),
+        Exchange::Composite => probe::<Composite>(setup),
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{Estimates, Exchange, Position, PositionVelocity, Reference};
+use forwardstep_core::reference::{Composite, Estimates, Exchange, Position, PositionVelocity, Reference};
 
 use super::assembly::Assembly;
 use super::error::SetupError;
@@ -35,6 +35,12 @@ impl Transmits for PositionVelocity {
 impl Transmits for Estimates {
     fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
         if let Dynamics::Estimates(reference) = dynamics { Some(reference) } else { None }
+    }
+}
+
+impl Transmits for Composite {
+    fn of(dynamics: Dynamics) -> Option<AnyReference<Self>> {
+        if let Dynamics::Composite(reference) = dynamics { Some(reference) } else { None }
     }
 }
 
@@ -70,5 +76,6 @@ pub fn reference_dynamics(setup: &Setup, agent: usize) -> Result<Dynamics, Setup
         setup::Exchange::Position => Dynamics::Position(reference(&assembly)?),
         setup::Exchange::PositionVelocity => Dynamics::PositionVelocity(reference(&assembly)?),
         setup::Exchange::Estimates => Dynamics::Estimates(reference(&assembly)?),
+        setup::Exchange::Composite => Dynamics::Composite(reference(&assembly)?),
     })
 }

@@ -52,7 +52,7 @@ impl ReferenceDynamics for Consensus {
             Exchange::PositionVelocity => {
                 Dynamics::position_velocity(designed(assembly, reference::Consensus::<PositionVelocity>::new)?)
             }
-            Exchange::Estimates => return Err(assembly.wrong_reference()),
+            Exchange::Estimates | Exchange::Composite => return Err(assembly.wrong_reference()),
         })
     }
 }
@@ -98,7 +98,7 @@ impl ReferenceDynamics for PureIntegral {
             Exchange::PositionVelocity => {
                 Dynamics::position_velocity(designed(assembly, reference::PureIntegral::<PositionVelocity>::new)?)
             }
-            Exchange::Estimates => return Err(assembly.wrong_reference()),
+            Exchange::Estimates | Exchange::Composite => return Err(assembly.wrong_reference()),
         })
     }
 }

@@ -51,6 +51,10 @@ impl<F: Reference> Reference for Dispatched<F> {
     ) -> Result<(), LengthError> {
         self.0.start(axes, measured, given, heard, state)
     }
+
+    fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+        self.0.foretell(wanted, message)
+    }
 }
 
 struct Evaluate<'a, 'h, F: Reference> {

@@ -48,7 +48,7 @@ impl LinearReference {
         let velocity = match exchange {
             Exchange::Position => 0.0,
             Exchange::PositionVelocity => -alpha[0] / agent.roots_per_s.first_real()?,
-            Exchange::Estimates => return None,
+            Exchange::Estimates | Exchange::Composite => return None,
         };
         Some(LinearReference { order, own, constant: false, coupled, heard: [-alpha[0], velocity] })
     }

@@ -21,7 +21,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use forwardstep_core::reference::{Estimates, Position, PositionVelocity, Reference};
+use forwardstep_core::reference::{Composite, Estimates, Position, PositionVelocity, Reference};
 
 use self::dispatched::Dispatched;
 use crate::closed_loop::{Assembly, SetupError};
@@ -163,6 +163,8 @@ pub enum Dynamics {
     PositionVelocity(Arc<dyn Reference<Exchange = PositionVelocity>>),
     /// Where they believe their leader to be, and how fast.
     Estimates(Arc<dyn Reference<Exchange = Estimates>>),
+    /// One vector, in which they agree with their leader.
+    Composite(Arc<dyn Reference<Exchange = Composite>>),
 }
 
 impl Dynamics {
@@ -179,5 +181,10 @@ impl Dynamics {
     /// Of agents that exchange estimates of their leader.
     pub fn estimates(reference: impl Reference<Exchange = Estimates>) -> Dynamics {
         Dynamics::Estimates(Arc::new(Dispatched(reference)))
+    }
+
+    /// Of agents that exchange one vector, in which they agree with their leader.
+    pub fn composite(reference: impl Reference<Exchange = Composite>) -> Dynamics {
+        Dynamics::Composite(Arc::new(Dispatched(reference)))
     }
 }

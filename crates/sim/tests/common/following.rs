@@ -17,18 +17,29 @@ use forwardstep_sim::{
 use super::axes;
 
 pub const SWARM: FollowingDesign = FollowingDesign::Swarm { coupling: 12.0 };
+pub const COMPOSITE: FollowingDesign = FollowingDesign::Composite;
 pub const OBSERVER: FollowingDesign = FollowingDesign::Observer { kappa: 2.5 };
-pub const DESIGNS: [FollowingDesign; 5] = [
+pub const DESIGNS: [FollowingDesign; 6] = [
     FollowingDesign::Continuous,
     FollowingDesign::Differentiable,
     FollowingDesign::WithoutAcceleration,
     SWARM,
+    COMPOSITE,
     OBSERVER,
 ];
 
 /// Whether ξ̂ stands in the place of ξ.
 pub fn observes(design: FollowingDesign) -> bool {
     matches!(design, FollowingDesign::Observer { .. })
+}
+
+/// What is told.
+pub fn exchange(design: FollowingDesign) -> Exchange {
+    match design {
+        FollowingDesign::Observer { .. } => Exchange::Estimates,
+        FollowingDesign::Composite => Exchange::Composite,
+        _ => Exchange::PositionVelocity,
+    }
 }
 
 pub fn arm(index: usize, q: [f64; 2], estimate: f64) -> AgentSetup {
@@ -77,7 +88,7 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
     Setup {
         agents: starts.iter().enumerate().map(|(k, q)| arm(k + 1, *q, estimate)).collect(),
         reference: Arc::new(following),
-        exchange: if observes(design) { Exchange::Estimates } else { Exchange::PositionVelocity },
+        exchange: exchange(design),
         network: Network {
             agents: 5,
             schedule: Schedule::fixed(vec![
@@ -101,6 +112,16 @@ pub fn arms(design: FollowingDesign, choice: Choice, estimate: f64, end_s: f64) 
         solver: Solver { method: Method::Adaptive { rtol: 1e-7, atol: 1e-9 }, ..Solver::default() },
         control: None,
     }
+}
+
+/// The same with z(0) and ż(0) of their own, and an α that is not one.
+pub fn on_its_way(mut setup: Setup) -> Setup {
+    assert!(setup.change_reference(|following: &mut Following| following.alpha = 1.4));
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        let of = |scale: f64| vec![scale * (k as f64 + 1.0), -0.2];
+        agent.start.reference = vec![of(0.1), of(-0.3)];
+    }
+    setup
 }
 
 /// The problem of `validation/trajectories/following.py`.

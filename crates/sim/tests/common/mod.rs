@@ -157,6 +157,7 @@ pub fn every_kind() -> Vec<(&'static str, Setup)> {
         ("following-119", arms(FollowingDesign::Differentiable, Choice::Implicit)),
         ("following-122", arms(FollowingDesign::WithoutAcceleration, Choice::Implicit)),
         ("following-as-a-swarm", arms(following::SWARM, Choice::Explicit)),
+        ("following-by-one-vector", following::on_its_way(arms(following::COMPOSITE, Choice::Implicit))),
         ("following-by-an-observer", arms(following::OBSERVER, Choice::Implicit)),
         (
             "following-110-an-agent",

@@ -3,6 +3,7 @@
 use super::super::attitude;
 use super::super::cascade::Upper;
 use super::super::case::{Case, Led, Step, ThrustStep};
+use super::super::composite::{self, Composite};
 use super::super::dynamics::Dynamics;
 use super::super::explanation::Subject;
 use super::super::form::{Combination, Form, Letter, Links, Quantity, Term, Vertex};
@@ -157,6 +158,9 @@ pub(super) fn identities(case: &Case<'_>) -> Vec<Identity> {
         (_, Step::Robot { .. } | Step::PositionOnly(_) | Step::Thrust(..) | Step::Chain(..)) => {
             if let Some(observer) = case.observer() {
                 return observed(case, &observer, notation);
+            }
+            if let Some(composite) = case.composite() {
+                return agreed(case, &composite, notation);
             }
             let found = case.dynamics().map_or_else(Vec::new, |dynamics| linear(case, &dynamics, notation));
             in_order(found)
@@ -371,6 +375,26 @@ fn observed(case: &Case<'_>, observer: &Observer, notation: Notation) -> Vec<Ide
     let [left, right] = observer.distance();
     let formula = Formula::equal(list.notation.form(&left), list.notation.form(&right));
     list.equal(Subject::Cascade, [&left, &right], (formula, ""));
+    if let Some(lower) = case.lower() {
+        list.lower(case, &lower, [places.plant, places.law, ""]);
+    }
+    list.adaptation(case);
+    in_order(list.found)
+}
+
+/// A vector on which agents agree with their leader, and a robot that is led by it.
+fn agreed(case: &Case<'_>, composite: &Composite, notation: Notation) -> Vec<Identity> {
+    let error = Combination::of(Quantity::own(Letter::Error), Polynomial::one());
+    let letters = [Letter::Position, Letter::Error];
+    let frame = Frame { plant: 2, error, followed: None, letters, integrated: None };
+    let mut list = List::new(notation, frame);
+    let (z, places) = (Quantity::own(Letter::Reference), Places::of(case, 2));
+    list.equation(Subject::ReferenceDynamics, (composite::told(), 1), &composite.agreement(), "");
+    list.equation(Subject::ReferenceDynamics, (z, 1), &composite.reference(), "");
+    for [left, right] in [composite.cascade(), composite.reduced()] {
+        let formula = Formula::equal(list.notation.form(&left), list.notation.form(&right));
+        list.equal(Subject::Cascade, [&left, &right], (formula, ""));
+    }
     if let Some(lower) = case.lower() {
         list.lower(case, &lower, [places.plant, places.law, ""]);
     }

@@ -237,6 +237,7 @@ impl<'c, 'a> At<'c, 'a> {
             (Letter::Observed, Vertex::Own) => {
                 self.chained([Signal::LeaderPosition, Signal::LeaderVelocity].into_iter(), k).map(exact)
             }
+            (Letter::Composite, Vertex::Own) => self.chained([Signal::Composite].into_iter(), k).map(exact),
             (Letter::Integral, Vertex::Own) if k < 2 => {
                 self.state(Signal::Reference(1), k == 1).map(exact).ok_or(Missing::Derivative)
             }
@@ -257,7 +258,7 @@ impl<'c, 'a> At<'c, 'a> {
         };
         match (quantity.letter, quantity.vertex, k) {
             (Letter::Position, Vertex::Neighbour, k) => heard(k).or_else(|_| self.at_once(k)),
-            (Letter::Observed, Vertex::Neighbour, k) => heard(k),
+            (Letter::Observed | Letter::Composite, Vertex::Neighbour, k) => heard(k),
             (Letter::Coupled, _, 0) => {
                 let mut sum = Vector::new();
                 add(&mut sum, degree, &exact(self.position(0)?));

@@ -79,7 +79,9 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         }
         GraphEvidence::Switches { graphs, exchange } => {
             let instead = match exchange {
-                Exchange::PositionVelocity | Exchange::Estimates => "(a1), which is `reference.consensus` of order two",
+                Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
+                    "(a1), which is `reference.consensus` of order two"
+                }
                 Exchange::Position => "(24), which is `reference.consensus`",
             };
             format!(
@@ -98,7 +100,7 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
 /// Why a fixed graph is asked for: see the head of `reference/following.rs` in the core.
 fn switches_under_leader(design: FollowingDesign) -> &'static str {
     match design {
-        FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
+        FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => {
             "the graph switches, and messages are late: what an agent said before a switch may come back to it after the next, \
              so that an error can go round for ever"
         }

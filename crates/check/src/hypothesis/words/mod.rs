@@ -69,7 +69,9 @@ fn of(subject: &Subject) -> String {
         Subject::Drive(design) => match design {
             FollowingDesign::Continuous | FollowingDesign::Observer { .. } => "ddq_0 + α dq_0",
             FollowingDesign::Swarm { .. } => "dddq_0",
-            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => "dddq_0 + β ddq_0 + α dq_0",
+            FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Composite => {
+                "dddq_0 + β ddq_0 + α dq_0"
+            }
         }
         .into(),
     }

@@ -69,7 +69,7 @@ impl Network {
         }
         let sent = match ideal.exchange {
             Exchange::Position => 1,
-            Exchange::PositionVelocity | Exchange::Estimates => 2,
+            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => 2,
         };
         let window_s = ideal.network.max_delay_s();
         let network = Network { ideal, first, kappa, sent, window_s };
@@ -106,7 +106,7 @@ impl Network {
             };
             match self.ideal.exchange {
                 Exchange::Position => inputs[edge.to].push(input(0, 1.0)),
-                Exchange::PositionVelocity | Exchange::Estimates => {
+                Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                     let root = |agent: usize| self.ideal.agents[agent].roots_per_s.real[0];
                     let share = (root(edge.from) / root(edge.to)).min(1.0);
                     inputs[edge.to].push(input(1, share));

@@ -45,8 +45,8 @@ enum NewError {
     Exchange(String),
     #[error("the law of `{}` does not follow the references of leaders", shown(.0))]
     Leads(String),
-    #[error("(122) follows a leader over a fixed graph without delays")]
-    LedOver,
+    #[error("a leader is followed over links without delay")]
+    LedLate,
     #[error("each `{}` follows a target of its own, and has no neighbours", shown(.0))]
     NoNeighbours(String),
 }
@@ -63,8 +63,8 @@ impl NewError {
             NewError::Order { .. } => Some("choose another `--order`, or leave it out"),
             NewError::Exchange(_) => Some("leave `--exchange` out"),
             NewError::Leads(_) => Some("see `forwardstep new --like vehicles-behind-a-leader`"),
-            NewError::LedOver => {
-                Some("see `forwardstep new --like leader-over-turns`, or `leader-over-late-links`, for (110)")
+            NewError::LedLate => {
+                Some("see `forwardstep new --like leader-over-late-links`, which comes as near as the delays let it")
             }
             NewError::NoNeighbours(_) => Some("leave the network and the reference out"),
         }
@@ -206,8 +206,8 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
         DelayChoice::Radio => TemplateDelay::Radio,
         DelayChoice::None => TemplateDelay::None,
     };
-    if template.leader && (template.graph == TemplateGraph::Switching || template.delay != TemplateDelay::None) {
-        return Err(refused(NewError::LedOver));
+    if template.leader && template.delay != TemplateDelay::None {
+        return Err(refused(NewError::LedLate));
     }
     Ok(template)
 }
@@ -217,7 +217,7 @@ fn choice(exchange: Exchange) -> ExchangeChoice {
     match exchange {
         Exchange::Position => ExchangeChoice::Position,
         // Estimates are told of leaders alone, which have no choice.
-        Exchange::PositionVelocity | Exchange::Estimates => ExchangeChoice::PositionVelocity,
+        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => ExchangeChoice::PositionVelocity,
     }
 }
 

@@ -405,6 +405,7 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                     (fact("Exchanged", html! { @match setup.exchange {
                         Exchange::Position => "positions",
                         Exchange::PositionVelocity => "positions and velocities",
+                        Exchange::Composite => "one vector, y = ż + β z + α q",
                         Exchange::Estimates => "estimates of the leader's position and velocity",
                     } }))
                     (fact("Scenario", html! { (record.scenario_name) br; code { (record.digest()) } " (BLAKE3)" }))

@@ -40,7 +40,7 @@ pub struct Template {
     pub order: u32,
     /// What agents tell each other; not read where there is a leader.
     pub exchange: Exchange,
-    /// Whether all follow a leader, whom the first hears.
+    /// Whether all follow a leader, whom the first hears; over a graph that switches the first and the last in turn.
     pub leader: bool,
     /// Who hears whom.
     pub graph: TemplateGraph,
@@ -84,7 +84,7 @@ impl Template {
                 parts.extend([self.agents() + agent, reference.to_owned(), law]);
             }
             TaskTemplate::Agree { .. } if self.leader => {
-                let [leader, reference] = self.robot.leader();
+                let [leader, reference] = self.robot.leader(self.graph == TemplateGraph::Switching);
                 parts.extend([leader, self.agents(), reference, law, self.network()]);
             }
             TaskTemplate::Agree { .. } => parts.extend([self.agents(), self.reference(), law, self.network()]),
@@ -138,7 +138,9 @@ impl Template {
         let has_choice = matches!(self.robot.task, TaskTemplate::Agree { exchange: None, .. });
         let (word, other) = match self.exchange {
             // Estimates are told of leaders alone.
-            Exchange::PositionVelocity | Exchange::Estimates => ("position_velocity", "or \"position\""),
+            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
+                ("position_velocity", "or \"position\"")
+            }
             Exchange::Position if has_choice => ("position", "or \"position_velocity\""),
             Exchange::Position => ("position", "all that this law needs of others"),
         };

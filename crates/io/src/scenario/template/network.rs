@@ -61,11 +61,12 @@ pub(super) fn text(name: &str, agents: u32, graph: TemplateGraph, delay: Templat
         }
         TemplateDelay::None => commented("# delay.constant_s = 0.2", "messages arrive at once"),
     };
-    let led = if leader { vec![format!("[\"leader\", \"{name}-1\"]")] } else { Vec::new() };
-    let list = |edges: &[Edge]| {
+    // Whom the leader is heard by, first of all.
+    let list = |first: u32, edges: &[Edge]| {
+        let led = leader.then(|| format!("[\"leader\", \"{name}-{first}\"]"));
         let edges = edges.iter().map(|(from, to)| format!("[\"{name}-{from}\", \"{name}-{to}\"]"));
         let mut text = commented("edges = [", "[who is heard, who hears]");
-        for edge in led.iter().cloned().chain(edges) {
+        for edge in led.into_iter().chain(edges) {
             // Writing to a string does not fail.
             let _ = writeln!(text, "    {edge},");
         }
@@ -75,19 +76,25 @@ pub(super) fn text(name: &str, agents: u32, graph: TemplateGraph, delay: Templat
     let head = format!("[network]\n{weight}{delay}");
     match graph {
         TemplateGraph::Switching => {
-            let phase = |odd: u32| {
-                let now: Vec<Edge> = edges.iter().copied().filter(|(from, _)| from % 2 == odd).collect();
+            let phase = |first: u32, now: &[Edge]| {
                 format!(
                     "\n[[network.phases]]\n{}{}",
                     commented("dwell_s = 1.0", "then comes the next phase, in turn"),
-                    list(&now)
+                    list(first, now)
                 )
             };
-            format!("{control}# Who hears whom, and how late: phases in turn.\n{head}{}{}", phase(1), phase(0))
+            // A leader has to reach everybody in each phase, others over both.
+            let [one, other]: [Vec<Edge>; 2] = if leader {
+                [(1..agents).map(|k| (k, k + 1)).collect(), (1..agents).rev().map(|k| (k + 1, k)).collect()]
+            } else {
+                [1, 0].map(|odd| edges.iter().copied().filter(|(from, _)| from % 2 == odd).collect())
+            };
+            let phases = phase(1, &one) + &phase(agents, &other);
+            format!("{control}# Who hears whom, and how late: phases in turn.\n{head}{phases}")
         }
         _ => {
             let says = "# Who hears whom, and how late; [[network.phases]] in place of edges make it switch.";
-            format!("{control}{says}\n{head}{}", list(&edges))
+            format!("{control}{says}\n{head}{}", list(1, &edges))
         }
     }
 }

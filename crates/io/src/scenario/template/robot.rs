@@ -157,8 +157,8 @@ impl RobotTemplate {
         text
     }
 
-    /// A leader whose motion stays where the axes start, with the dynamics that follow it.
-    pub(super) fn leader(&self) -> [String; 2] {
+    /// A leader whose motion stays where the axes start, with the dynamics that follow it, over graphs that take turns if `turns`.
+    pub(super) fn leader(&self, turns: bool) -> [String; 2] {
         let course = |[low, high]: &[f64; 2]| {
             let (middle, swing) = (0.5 * (low + high), 0.25 * (high - low));
             quoted(&format!("{} + {}*sin(0.2*t)", short(middle), short(swing)))
@@ -170,7 +170,11 @@ impl RobotTemplate {
             formulas.join(", ")
         );
         let mut reference = "# Everybody follows the leader, whom some of them hear.\n[reference.leader]\n".to_owned();
-        reference += &commented("design = \"without_acceleration\"", "(122); or \"continuous\", which is (110)");
+        reference += &if turns {
+            commented("design = \"composite\"", "not from the paper; or \"continuous\", which is (110)")
+        } else {
+            commented("design = \"without_acceleration\"", "(122); or \"continuous\", which is (110), or \"composite\"")
+        };
         reference += &commented("roots_per_s = [1.0, 1.0]", "two, both positive");
         reference += &commented("gain = 2.0", "gamma, above what the leader asks for: see `check`");
         [leader, reference]

@@ -56,7 +56,7 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
         GraphEvidence::DeclaredPhases { .. } | GraphEvidence::RefutedSwitching { .. } => SHIPPED.into(),
         GraphEvidence::VaryingWeight => "weights that are constant".into(),
         GraphEvidence::Switches { exchange, .. } => match exchange {
-            Exchange::PositionVelocity | Exchange::Estimates => {
+            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
                 "one graph, or `reference.consensus` with two roots, which is (a1)".into()
             }
             Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
@@ -67,11 +67,11 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
             format!("in phase {phase} an edge to {to} from the leader, or from an agent that hears it")
         }
         GraphEvidence::SwitchesUnderLeader { design } => match design {
-            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => {
+            FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => {
                 "one graph, or links without delay".into()
             }
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
-                "one graph, or the design `continuous`, which is (110)".into()
+                "one graph, or the design `continuous`, which is (110), or `composite`, whose torques are differentiable".into()
             }
             FollowingDesign::Swarm { .. } => "one graph".into(),
         },
@@ -143,7 +143,7 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
             }
         },
         LinkEvidence::VaryingWeights { .. } => {
-            "weights that are constant, or `design = \"continuous\"`, which is (110)".into()
+            "weights that are constant, or `design = \"composite\"`, whose torques are differentiable too".into()
         }
         LinkEvidence::Prompt | LinkEvidence::Coupling { .. } | LinkEvidence::ConstantWeights => return None,
     })

@@ -62,6 +62,9 @@ pub enum LeaderDesignFile {
     WithoutAcceleration,
     /// Swarm tracking over an undirected graph, with differences to neighbours only; not printed in the paper.
     Swarm,
+    /// Everybody agrees with the leader on one vector, y = ż + β z + α q, and tells that alone: torques are differentiable, over graphs that
+    /// switch and links that delay too; not from the paper.
+    Composite,
     /// A distributed observer of the leader, for comparison: agents tell where they believe the leader to be and how fast, and each
     /// follows its own estimate; not from the paper.
     Observer,
@@ -107,6 +110,7 @@ impl ReferenceKind for LeaderReferenceFile {
                 Some(coupling) => FollowingDesign::Swarm { coupling: coupling.value },
                 None => return Err(fault(&self.design, ValueProblem::MissingKey { key: "coupling" })),
             },
+            LeaderDesignFile::Composite => FollowingDesign::Composite,
             LeaderDesignFile::Observer => FollowingDesign::Observer { kappa: second_root(self)? },
         };
         if let (Some(coupling), false) = (&self.coupling, matches!(design, FollowingDesign::Swarm { .. })) {
@@ -126,6 +130,7 @@ impl ReferenceKind for LeaderReferenceFile {
         let following = Following { leader, design, alpha, beta, gain: self.gain.value, choice, period_s };
         let exchange = match design {
             FollowingDesign::Observer { .. } => Exchange::Estimates,
+            FollowingDesign::Composite => Exchange::Composite,
             FollowingDesign::Continuous
             | FollowingDesign::Differentiable
             | FollowingDesign::WithoutAcceleration
