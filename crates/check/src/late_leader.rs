@@ -17,8 +17,8 @@ const SETTLED: f64 = 1e-13;
 /// What is asked for beyond what is needed, as a part of the largest: far more than sweeping and rounding leave.
 const MORE: f64 = 1e-9;
 
-/// A bound of what is left of q_i − q_0 behind a filter 1/(p + α), or one of two real roots, in the unit of the axes; nothing where none could be verified, as of a leader that is
-/// an agent, of a delay without a bound, or of a weight that varies.
+/// A bound of what is left of q_i − q_0 behind a filter 1/(p + α), or one of two real roots whose product is α, in the unit of the axes;
+/// nothing where none could be verified, as of a leader that is an agent, of a delay without a bound, or of a weight that varies.
 pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
     let drive = following.drive_bound(None);
     let rows = rows(setup)?;

@@ -156,8 +156,9 @@ where
             && let [alpha] = alpha[..]
         {
             for (axis, jet) in target.iter().enumerate() {
-                work.z[axis] = jet[1] - alpha * (q[axis] - jet[0]);
-                work.dz[axis] = jet[2] - alpha * (dq[axis] - jet[1]);
+                let desired = |r: usize| jet.get(r).copied().unwrap_or(f64::NAN);
+                work.z[axis] = desired(1) - alpha * (q[axis] - desired(0));
+                work.dz[axis] = desired(2) - alpha * (dq[axis] - desired(1));
             }
             return Ok(());
         }
