@@ -260,7 +260,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         if self.started {
             message.copy_from_slice(&self.state[held * m..held * m + told]);
         } else {
-            self.reference.foretell(&self.wanted, message);
+            self.reference.initial_message(&self.wanted, message);
         }
         Ok(())
     }

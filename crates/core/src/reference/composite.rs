@@ -170,7 +170,7 @@ impl Reference for CompositeFollowing {
         Ok(())
     }
 
-    fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+    fn initial_message(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
         let of = |k: usize, r: usize| wanted.get(r).and_then(|block| block.get(k)).copied().unwrap_or(0.0);
         for (k, y) in message.iter_mut().enumerate() {
             *y = self.composite(of(k, 0), of(k, 1), *y);

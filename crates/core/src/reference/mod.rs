@@ -119,9 +119,10 @@ pub trait Reference: Send + Sync + 'static {
         state: &mut [f64],
     ) -> Result<(), LengthError>;
 
-    /// Turns the message of one agent that has not started, which is measured as far as it has room, into what its state will tell
-    /// when it starts from there with z(0), ż(0), … as `wanted`. Not called where messages are measured.
-    fn foretell(&self, _wanted: &[Vec<f64>], _message: &mut [f64]) {}
+    /// The message of one agent before its first sample, when its state has not been computed: what it will transmit once it starts with
+    /// z(0), ż(0), … as `wanted`. `message` comes filled with what is measured, q and then q̇, as far as it has room. Called only where
+    /// messages are blocks of the state, see [`Exchange::HELD`].
+    fn initial_message(&self, _wanted: &[Vec<f64>], _message: &mut [f64]) {}
 }
 
 /// Which dynamics, known at run time only, behind a pointer of its own or a shared one.
@@ -172,8 +173,8 @@ macro_rules! behind {
                 (**self).start(axes, measured, given, heard, state)
             }
 
-            fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
-                (**self).foretell(wanted, message)
+            fn initial_message(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+                (**self).initial_message(wanted, message)
             }
         }
     };

@@ -162,7 +162,7 @@ impl Reference for Observer {
     }
 
     // x̂(0) = q(0), which stands there, and v̂(0) = z(0).
-    fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+    fn initial_message(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
         let velocity = message.len() / 2;
         for (v, wanted) in message[velocity..].iter_mut().zip(wanted.first().into_iter().flatten()) {
             *v = *wanted;

@@ -52,8 +52,8 @@ impl<F: Reference> Reference for Dispatched<F> {
         self.0.start(axes, measured, given, heard, state)
     }
 
-    fn foretell(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
-        self.0.foretell(wanted, message)
+    fn initial_message(&self, wanted: &[Vec<f64>], message: &mut [f64]) {
+        self.0.initial_message(wanted, message)
     }
 }
 
