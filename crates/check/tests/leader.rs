@@ -229,11 +229,10 @@ fn thm8_what_the_paper_does_not_speak_about_is_said() {
     assert_eq!(answer(&report, "in each of the graphs").0, Answer::Violated);
 }
 
-/// Over one graph, graphs that take turns, and late links: the same hypotheses with the same answers, but for the theorem and whose it is.
-#[test]
-fn own_the_observer_is_judged_as_110_is_but_for_whose_it_is() {
+/// One graph that the leader reaches everybody in and one in which it reaches nobody; two that take turns, both ways.
+fn graphs() -> [Schedule; 4] {
     let phase = |edges| Phase { dwell_s: 1.0, edges };
-    let graphs = [
+    [
         Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
         Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
         Schedule::periodic(vec![
@@ -241,16 +240,26 @@ fn own_the_observer_is_judged_as_110_is_but_for_whose_it_is() {
             phase(vec![edge(2, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
         ]),
         Schedule::periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]),
-    ];
+    ]
+}
+
+/// Two masses in a row under a design over one of them.
+fn judged(design: FollowingDesign, graph: &Schedule, delay_s: f64, gain: f64) -> Report {
+    let mut setup = setup(design, wave(), gain);
+    setup.network.schedule = graph.clone();
+    setup.network.delays[0] = Delay::constant(delay_s);
+    check(&setup)
+}
+
+/// Over one graph, graphs that take turns, and late links: the same hypotheses with the same answers, but for the theorem and whose it is.
+#[test]
+fn own_the_observer_is_judged_as_110_is_but_for_whose_it_is() {
+    let graphs = graphs();
     for (graph, delay_s, gain) in
         graphs.iter().flat_map(|graph| [(graph, 0.0, 3.0), (graph, 0.1, 3.0), (graph, 0.0, 2.2)])
     {
-        let [told, observed] = [FollowingDesign::Continuous, FollowingDesign::Observer { kappa: 0.25 }].map(|design| {
-            let mut setup = setup(design, wave(), gain);
-            setup.network.schedule = graph.clone();
-            setup.network.delays[0] = Delay::constant(delay_s);
-            check(&setup)
-        });
+        let [told, observed] = [FollowingDesign::Continuous, FollowingDesign::Observer { kappa: 0.25 }]
+            .map(|design| judged(design, graph, delay_s, gain));
         let asked = |report: &Report| {
             let each = report.hypotheses.iter().filter(|one| one.id != Id::Hurwitz);
             each.map(|one| (one.id, one.answer(), one.because())).collect::<Vec<_>>()
@@ -268,23 +277,9 @@ fn own_the_observer_is_judged_as_110_is_but_for_whose_it_is() {
 /// the torque. What is left over late links is what the filter p² + β p + α makes of it, with pairs too.
 #[test]
 fn own_one_vector_is_judged_as_110_is_but_for_its_gain_and_its_torque() {
-    let phase = |edges| Phase { dwell_s: 1.0, edges };
-    let graphs = [
-        Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
-        Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
-        Schedule::periodic(vec![
-            phase(vec![edge(2, 0, 1.0, 0), edge(0, 1, 1.0, 0)]),
-            phase(vec![edge(2, 1, 1.0, 0), edge(1, 0, 1.0, 0)]),
-        ]),
-        Schedule::periodic(vec![phase(vec![edge(2, 0, 1.0, 0)]), phase(vec![edge(0, 1, 1.0, 0)])]),
-    ];
+    let graphs = graphs();
     for (graph, delay_s) in graphs.iter().flat_map(|graph| [(graph, 0.0), (graph, 0.1)]) {
-        let of = |design, gain: f64| {
-            let mut setup = setup(design, wave(), gain);
-            setup.network.schedule = graph.clone();
-            setup.network.delays[0] = Delay::constant(delay_s);
-            check(&setup)
-        };
+        let of = |design, gain| judged(design, graph, delay_s, gain);
         // |d³q + 2 q̈ + q̇| of ½ sin 2t is 5: half again as large as 3.
         let (told, agreed, weak) = (
             of(FollowingDesign::Continuous, 3.0),

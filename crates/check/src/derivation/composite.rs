@@ -2,7 +2,6 @@
 
 use num_rational::BigRational;
 
-use super::adaptation;
 use super::case::Case;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Quantity, Term};
@@ -76,16 +75,9 @@ pub(super) fn explained(case: &Case<'_>, composite: &Composite) -> Explained {
         .words("z is led by it, and z̈ with the sign in it is integrated twice; nothing is differentiated.")
         .formula(notation.equation(z, 1, &composite.reference()), "")
         .words(words::links(case.setup, case.heard()));
-    let mut sections = vec![reference];
+    let mut sections = vec![reference, case.controller(&notation, &places)];
     let mut system = vec![equal(composite.cascade())];
     if let Some(lower) = case.lower() {
-        let input = Quantity::own(Letter::Term(lower.input));
-        let law = Formula::equal(notation.quantity(input, 0), notation.form(&lower.law));
-        let controller = Section::new(Subject::Controller).formula(lower.motion(&notation), places.plant);
-        let controller = adaptation::of(case, &notation)
-            .into_iter()
-            .fold(controller.formula(law, places.law), |section, (formula, place)| section.formula(formula, place));
-        sections.push(controller);
         system.push(Formula::equal(notation.form(&lower.left), notation.form(&lower.right)));
     }
     let cascade = Section::new(Subject::Cascade)

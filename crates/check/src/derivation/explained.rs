@@ -310,7 +310,7 @@ impl Case<'_> {
             .formula(Formula::equal(symbol("i"), notation.form(&form)), place)
     }
 
-    fn controller(&self, notation: &Notation, places: &Places) -> Section {
+    pub(super) fn controller(&self, notation: &Notation, places: &Places) -> Section {
         let section = Section::new(Subject::Controller);
         let Some(lower) = self.lower() else {
             return section.words(

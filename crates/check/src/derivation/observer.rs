@@ -2,7 +2,6 @@
 
 use num_rational::BigRational;
 
-use super::adaptation;
 use super::case::Case;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Quantity, Term};
@@ -75,20 +74,13 @@ pub(super) fn explained(case: &Case<'_>, observer: &Observer) -> Explained {
         .formula(notation.equation(z, 0, &observer.reference()), "")
         .formula(notation.equation(z, 1, &observer.rate()), "")
         .words(words::links(case.setup, case.heard()));
-    let mut sections = vec![reference];
+    let mut sections = vec![reference, case.controller(&notation, &places)];
     let mut cascade = Section::new(Subject::Cascade).words(
         "No robot enters the observer, so that nothing has to be reduced: the upper subsystem is the distance from the own estimate, driven by s.",
     );
     let [left, right] = observer.distance();
     let mut system = vec![Formula::equal(notation.form(&left), notation.form(&right))];
     if let Some(lower) = case.lower() {
-        let input = Quantity::own(Letter::Term(lower.input));
-        let law = Formula::equal(notation.quantity(input, 0), notation.form(&lower.law));
-        let controller = Section::new(Subject::Controller).formula(lower.motion(&notation), places.plant);
-        let controller = adaptation::of(case, &notation)
-            .into_iter()
-            .fold(controller.formula(law, places.law), |section, (formula, place)| section.formula(formula, place));
-        sections.push(controller);
         system.push(Formula::equal(notation.form(&lower.left), notation.form(&lower.right)));
     }
     cascade = cascade
