@@ -4,6 +4,7 @@ mod asked;
 mod complex_roots;
 mod designs;
 mod failures;
+mod sampling;
 
 use forwardstep_sim::reference::Backstepping;
 use std::sync::Arc;
@@ -11,9 +12,7 @@ use std::sync::Arc;
 use crate::common::kinds::{alone, blind_mass, filtered_spacecraft, rest_at, spacecraft, tracking, vehicle};
 use crate::common::{About, answer, answers, edge, masses};
 use forwardstep_check::hypothesis::{GraphEvidence, KindEvidence};
-use forwardstep_check::{
-    Answer, Evidence, Finding, Id, NoPrediction, PracticalAnswer, SamplingMargin, Theorem, check, practical, predict,
-};
+use forwardstep_check::{Answer, Evidence, Id, NoPrediction, Theorem, check, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
@@ -244,107 +243,6 @@ fn every_measurement_that_is_not_exact_is_said() {
         said(|control| control.sensors.position_quantum = 1e-3)
             && said(|control| control.sensors.velocity_quantum = 1e-3)
     );
-}
-
-#[test]
-fn eq_the_margin_is_that_of_the_worst_agent() {
-    // Masses of 1 kg and 2 kg under K = 5: λ_max(M⁻¹K) is 5 and 2.5.
-    for order in [[0, 1], [1, 0]] {
-        let mut setup = pair([constant(0.0), constant(0.0)]);
-        setup.agents = order.map(|k| setup.agents[k].clone()).to_vec();
-        setup.control = control(0.0);
-        let found = SamplingMargin::of(&setup).unwrap();
-        assert!((found.start.sigma - 0.25).abs() < 1e-12 && found.start.agent.index == order[0], "{found:?}");
-        assert_eq!((found.start.sigma, found.start.frozen_sigma), (found.start.damping_sigma, None), "nobody adapts");
-        assert!((found.longest_s.unwrap() - 0.4).abs() < 1e-9 && (found.recommended_s.unwrap() - 0.2).abs() < 1e-9);
-    }
-}
-
-#[test]
-fn the_margin_is_adequate_up_to_a_half_and_inadequate_from_one_on() {
-    let said = |sample_hz: f64, late: f64| {
-        let mut setup = pair([constant(0.0), constant(0.0)]);
-        setup.control = control(late / sample_hz);
-        setup.control.as_mut().unwrap().sample_hz = sample_hz;
-        let practical = practical(&setup);
-        let [finding, Finding::TrackingDisagreement(_)] = &practical.findings[..] else { panic!("{practical:?}") };
-        assert_eq!(practical.worst(), Some(finding.answer()));
-        (finding.answer(), finding.because())
-    };
-    use PracticalAnswer::{Adequate, Inadequate, Marginal};
-    let answers = [5.01, 4.99, 2.51, 2.49].map(|sample_hz| said(sample_hz, 0.0).0);
-    assert_eq!(answers, [Adequate, Marginal, Marginal, Inadequate]);
-    // A torque that comes late by a quarter of a period: k up to 4.
-    assert_eq!([1.26, 1.24].map(|sample_hz| said(sample_hz, 0.25).0), [Marginal, Inadequate]);
-    let sentence = said(10.0, 0.0).1;
-    let said_so = "σ = 0.25 at the start (arm-1), whose fastest mode has 5/s; it reaches 1 at a period of 400 ms; keep it below \
-                   0.5, a period of 200 ms";
-    assert!(sentence.starts_with(said_so), "{sentence}");
-    let late = said(1.0, 0.9).1;
-    assert!(late.contains("with torques 900 ms late; sampling is too slow"), "{late}");
-    assert!(late.contains("no period is short enough for it"), "{late}");
-    let mut setup = pair([constant(0.0), constant(0.0)]);
-    assert_eq!(practical(&setup).worst(), None, "control is continuous");
-    setup.control = control(0.0);
-    setup.control.as_mut().unwrap().sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 3.0 };
-    assert!(practical(&setup).findings[0].because().contains("5/s, with velocities filtered at 3 Hz; it reaches 1"));
-}
-
-#[test]
-fn eq_a_bandwidth_of_the_adaptation_counts_squared() {
-    // Γ = ω² diag(scale): what is learnt goes with Γ, beside what the damping does, and counts for less the larger K is.
-    let found = |omega: f64, k: f64| {
-        let mut setup = pair([constant(0.0), constant(0.0)]);
-        let adaptation = Gain::Bandwidth(omega);
-        setup.agents[0] = crate::common::arm(0, &[1.0, 2.0]);
-        let damping = Gain::Number(k);
-        setup.agents[0].law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0; 5], bounds: None });
-        setup.control = control(0.0);
-        let found = SamplingMargin::of(&setup).unwrap();
-        assert_eq!(found.start.agent.index, 0);
-        found
-    };
-    let at = |omega: f64, k: f64| found(omega, k).start;
-    let (one, two) = (at(1.0, 1e-9), at(2.0, 1e-9));
-    let ratios = [two.frozen_sigma.unwrap() / one.frozen_sigma.unwrap(), two.sigma / one.sigma];
-    assert!(one.sigma > 1.0 && ratios.iter().all(|ratio| (ratio - 4.0).abs() < 1e-4), "{ratios:?}");
-    assert_eq!(found(1.0, 1e-9).answer(), PracticalAnswer::NotShown, "with Y frozen no mode is unstable");
-    assert!(found(40.0, 1e-9).answer() == PracticalAnswer::Inadequate, "{:?}", found(40.0, 1e-9));
-    assert!((at(1.0, 2.0).sigma - at(1.0, 2.0).damping_sigma) * 1.9e9 < one.sigma);
-}
-
-#[test]
-fn the_adaptation_of_those_that_follow_targets_of_their_own_is_not_in_the_margin() {
-    let margin = |tracks: bool| {
-        let mut setup = if tracks {
-            tracking(crate::common::arm(0, &[1.0, 2.0]), vec![rest_at(0.1), rest_at(0.2)])
-        } else {
-            alone(crate::common::arm(0, &[1.0, 2.0]))
-        };
-        setup.control = control(0.0);
-        SamplingMargin::of(&setup).unwrap()
-    };
-    let [own, shared] = [true, false].map(margin);
-    assert_eq!([own.adaptation_left_out, shared.adaptation_left_out], [1, 0]);
-    let [own, shared] = [own.start, shared.start];
-    assert!(own.sigma == own.damping_sigma && own.frozen_sigma.is_none(), "{own:?}");
-    assert!(
-        shared.sigma > 1.005 * shared.damping_sigma && shared.frozen_sigma > Some(shared.damping_sigma),
-        "{shared:?}"
-    );
-}
-
-/// Y is that of the start with its velocities, which adaptation makes of them what it does.
-#[test]
-fn the_margin_at_the_start_is_that_of_an_arm_that_moves() {
-    let margin = |dq: [f64; 2]| {
-        let mut setup = alone(crate::common::arm(0, &[1.0, 2.0]));
-        setup.agents[0].start.dq = dq.to_vec();
-        setup.control = control(0.0);
-        SamplingMargin::of(&setup).unwrap().start
-    };
-    let [rests, moves] = [[0.0; 2], [3.0, -2.0]].map(margin);
-    assert!(rests.damping_sigma == moves.damping_sigma && moves.sigma > 1.001 * rests.sigma, "{rests:?} {moves:?}");
 }
 
 #[test]

@@ -26,7 +26,7 @@ impl Response {
     pub(super) fn at_rest(agent: &AgentSetup) -> Option<Response> {
         let gains = Gains::of(agent)?;
         let m = agent.robot.axes.len();
-        let DynamicsAt { mass, regressor, .. } = dynamics(agent, &agent.start.q, &vec![0.0; m], 0.0)?;
+        let DynamicsAt { mass, regressor, .. } = dynamics(agent, &agent.start.q, &vec![0.0; m], &vec![0.0; m])?;
         let mass = DMatrix::from_row_slice(m, m, &mass);
         let learning = gains.adaptation.map_or_else(
             || DMatrix::zeros(m, m),

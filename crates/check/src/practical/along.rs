@@ -13,7 +13,7 @@ use super::held::Hold;
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
 use super::power::{PowerBound, is_fed, noise_w_of, pushed_w};
-use super::rates::Gains;
+use super::rates::{Gains, Rates};
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
@@ -64,19 +64,22 @@ pub struct LoadReached {
 }
 
 /// The columns of a recording.
-struct Columns<'a>(HashMap<(usize, Signal, usize), &'a [f64]>);
+pub(super) struct Columns<'a>(HashMap<(usize, Signal, usize), &'a [f64]>);
 
-impl Columns<'_> {
+impl<'a> Columns<'a> {
+    pub(super) fn of(recording: &'a Recording) -> Columns<'a> {
+        Columns(recording.columns.iter().map(|c| ((c.agent, c.signal, c.axis), &c.values[..])).collect())
+    }
+
     /// A signal of an agent at one row.
-    fn at(&self, agent: usize, signal: Signal, axes: usize, row: usize) -> Option<Vec<f64>> {
+    pub(super) fn at(&self, agent: usize, signal: Signal, axes: usize, row: usize) -> Option<Vec<f64>> {
         (0..axes).map(|axis| self.0.get(&(agent, signal, axis))?.get(row).copied()).collect()
     }
 }
 
 /// Looks at `recording`, which a run of `setup` left behind.
 pub fn along(setup: &Setup, recording: &Recording) -> Along {
-    let columns = recording.columns.iter().map(|c| ((c.agent, c.signal, c.axis), &c.values[..])).collect();
-    let columns = Columns(columns);
+    let columns = Columns::of(recording);
     let hold = setup.control.as_ref().map(|control| (Hold::of(control), 1.0 / control.sample_hz));
     let evaluator = |agent: usize| {
         limits(setup, agent)?;
@@ -92,9 +95,9 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
         for (agent, gains, evaluator) in &mut sampled {
             found.states += 1;
             if let (Some(gains), Some((hold, period_s))) = (gains, hold)
-                && let Some(rate) = rate(setup, &columns, *agent, gains, row)
+                && let Some(rates) = rates(setup, &columns, *agent, gains, row)
             {
-                let sigma = period_s * rate / hold.largest_gain(period_s);
+                let sigma = rates.sigma(hold, period_s);
                 if found.margin.is_none_or(|worst| sigma > worst.sigma) {
                     found.margin = Some(MarginReached { agent: *agent, t_s, sigma });
                 }
@@ -160,8 +163,8 @@ fn rows(rows: usize, agents: usize) -> Vec<usize> {
     chosen
 }
 
-/// λ of an agent at one row.
-fn rate(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row: usize) -> Option<f64> {
+/// M and P of an agent at one row.
+fn rates(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row: usize) -> Option<Rates> {
     let robot = &setup.agents[agent].robot;
     let axes = robot.axes.len();
     let signal = |signal| columns.at(agent, signal, axes, row);
@@ -170,7 +173,7 @@ fn rate(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row: 
     let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
     let dynamics = robot.kind.lagrangian()?.dynamics_at(&robot.theta, motion).ok()?;
     let finite = dynamics.mass.iter().chain(&dynamics.regressor).all(|entry| entry.is_finite());
-    if finite { Some(gains.rates(&dynamics)?.sampled_per_s) } else { None }
+    if finite { gains.rates(&dynamics) } else { None }
 }
 
 /// The static torque of an agent at one row.

@@ -33,8 +33,19 @@
 //!
 //! (that at μ = −1 holds for every δ in [0, 1]). The first κ at which one of them fails bounds every mode: the whole spectrum below it
 //! decays. Without a delay it is k = 2 whatever the cut-off.
+//!
+//! With the adaptation besides, Y frozen, u = w − K f and P = Y Γ Yᵀ, it is, with all axes,
+//!
+//! ```text
+//! s⁺ = s + h M⁻¹ [(1 − δ) u + δ u⁻]      f⁺ = a f + (1 − a) (s + h M⁻¹ [½ (1 − δ)² u + (δ − ½ δ²) u⁻])      w⁺ = w − h P f⁺
+//! ```
+//!
+//! where f is s with measured velocities. What is learnt comes ℓ periods later than with a command that acts at once: δ, and besides
+//! ½ + a/(1 − a) = ½ + 1/(e^(ωh) − 1) for the difference and its filter. Since ẇ = −P s, that is w + ℓ h P s to first order, so that ℓ h P
+//! is taken from K.
 
 use forwardstep_sim::{Control, VelocitySensor};
+use nalgebra::DMatrix;
 
 /// How a command reaches its robot, besides being held for a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,17 +88,42 @@ impl Hold {
         }
     }
 
-    /// [`longest_period_s`] with this very delay, however long the period is.
-    pub fn longest_period_s(self, rate_per_s: f64, near_s: f64) -> Option<f64> {
-        longest_period_s(rate_per_s, near_s, |_| self)
+    /// ℓ, by how many periods what is learnt acts later than with measured velocities and commands that act at once.
+    pub(super) fn lag(self, period_s: f64) -> f64 {
+        let filter = self.cut_off_rad_s.map_or(0.0, |cut_off_rad_s| 0.5 + 1.0 / libm::expm1(cut_off_rad_s * period_s));
+        self.delay_s / period_s + filter
+    }
+
+    /// The largest multiplier of a period by its size, with Y frozen: of M⁻¹ K and of M⁻¹ P.
+    pub(super) fn radius(self, period_s: f64, damping: &DMatrix<f64>, learning: &DMatrix<f64>) -> f64 {
+        let (late, h, m) = (self.delay_s / period_s, period_s, damping.nrows());
+        let early = 1.0 - late;
+        // A row of the state (s, f, w, u⁻) for every quantity; h M⁻¹ is taken into w and u.
+        let part = |at: usize| DMatrix::from_fn(m, 4 * m, |i, j| f64::from(u8::from(j == at * m + i)));
+        let [s, filtered, w, before] = [0, 1, 2, 3].map(part);
+        let f = if self.cut_off_rad_s.is_some() { &filtered } else { &s };
+        let u = &w - h * damping * f;
+        let next = &s + early * &u + late * &before;
+        let next_f = match self.cut_off_rad_s {
+            None => next.clone(),
+            Some(cut_off_rad_s) => {
+                let quick = -libm::expm1(-cut_off_rad_s * h);
+                let moved = &s + 0.5 * early * early * &u + (late - 0.5 * late * late) * &before;
+                (1.0 - quick) * f + quick * moved
+            }
+        };
+        let next_w = &w - h * h * learning * &next_f;
+        let mut all = DMatrix::zeros(4 * m, 4 * m);
+        for (at, rows) in [&next, &next_f, &next_w, &u].into_iter().enumerate() {
+            all.rows_mut(at * m, m).copy_from(rows);
+        }
+        all.complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max)
     }
 }
 
-/// The longest period with which modes up to `rate_per_s` decay, s, where a period is held as `hold` says: the end of the interval of
-/// such periods that holds `near_s`, or of the next one below it. `None` where there is none: the delay is too long for that rate,
-/// however fast the samples.
-pub fn longest_period_s(rate_per_s: f64, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
-    let decays = |period_s: f64| rate_per_s * period_s < hold(period_s).largest_gain(period_s);
+/// The longest period, s, at which `decays`, where a period is held as `hold` says: the end of the interval of such periods that holds
+/// `near_s`, or of the next one below it. `None` where there is none: the delay is too long, however fast the samples.
+pub(super) fn longest_period_s(near_s: f64, hold: &impl Fn(f64) -> Hold, decays: impl Fn(f64) -> bool) -> Option<f64> {
     // No command may come later than the next sample.
     let at_least = |period_s: f64| period_s.max(hold(period_s).delay_s);
     let (step, most) = SCAN;
@@ -199,12 +235,17 @@ mod tests {
         assert_eq!([0.0, 0.25, 0.5, 1.0].map(gain), [2.0, 4.0, 2.0, 1.0]);
     }
 
+    /// Of modes up to a rate.
+    fn longest(rate_per_s: f64, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
+        longest_period_s(near_s, &hold, |period_s| rate_per_s * period_s < hold(period_s).largest_gain(period_s))
+    }
+
     #[test]
     fn the_longest_period_ends_where_modes_no_longer_decay() {
         for (hold, near_s) in holds() {
             for rate_per_s in [1.0, 90.0, 400.0] {
                 let share = |period_s: f64| period_s * rate_per_s / hold.largest_gain(period_s);
-                match hold.longest_period_s(rate_per_s, near_s) {
+                match longest(rate_per_s, near_s, |_| hold) {
                     Some(longest_s) => {
                         assert!(longest_s >= hold.delay_s && (share(longest_s) - 1.0).abs() < 1e-9, "{hold:?}");
                         assert!(share(1.001 * longest_s) > 1.0, "{hold:?} at {rate_per_s}");
@@ -224,13 +265,13 @@ mod tests {
     fn no_rate_of_samples_makes_up_for_a_delay_that_is_too_long() {
         let hold = Hold { delay_s: 0.02, cut_off_rad_s: None };
         // λ d is 0.98 and 1.02.
-        let longest_s = hold.longest_period_s(49.0, 0.5).unwrap_or_default();
+        let longest_s = longest(49.0, 0.5, |_| hold).unwrap_or_default();
         assert!((longest_s - (2.0 / 49.0 + 0.04)).abs() < 1e-9, "{longest_s}");
-        assert_eq!(hold.longest_period_s(51.0, 0.5), None);
-        assert_eq!(Hold::IDEAL.longest_period_s(0.0, 0.5), Some(f64::INFINITY));
+        assert_eq!(longest(51.0, 0.5, |_| hold), None);
+        assert_eq!(longest(0.0, 0.5, |_| Hold::IDEAL), Some(f64::INFINITY));
         // A delay that is a part of the period shrinks with it.
         let part = |period_s: f64| Hold { delay_s: 0.9 * period_s, cut_off_rad_s: None };
-        let longest_s = longest_period_s(51.0, 0.5, part).unwrap_or_default();
+        let longest_s = longest(51.0, 0.5, part).unwrap_or_default();
         assert!((longest_s - 1.0 / (0.9 * 51.0)).abs() < 1e-9, "{longest_s}");
     }
 }

@@ -22,6 +22,11 @@ const FORGOTTEN: f64 = 1e-6;
 const MOST_STATES: usize = 4000;
 const LEAST: usize = 16;
 
+/// Factor from one period to the next while one is looked for at which a mode grows, and how many are looked at.
+const SCAN: (f64, u32) = (1.25, 48);
+/// The period is found to this part.
+const TOLERANCE: f64 = 1e-4;
+
 /// The multipliers of the agent for which sampling is worst.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearisedSampling {
@@ -61,6 +66,35 @@ impl LinearisedSampling {
             };
         }
         worst.map(|found| LinearisedSampling { agents, ..found })
+    }
+
+    /// The period near `near_s` from which on a fast mode of `setup` grows, s, where `sampled` samples it with a period: the end of the interval
+    /// of periods without such a mode that holds `near_s`, or of the next one below it. Infinity where none was found; `None` where there
+    /// is nothing to linearise, or a mode grows however short periods are.
+    pub fn longest_period_s(near_s: f64, sampled: impl Fn(f64) -> Setup) -> Option<f64> {
+        let radius = |period_s: f64| LinearisedSampling::of(&sampled(period_s)).map(|found| found.radius);
+        radius(near_s)?;
+        // Where nothing finite is found no mode decays.
+        let decays = |period_s: f64| radius(period_s).is_some_and(|radius| radius < 1.0);
+        let (step, most) = SCAN;
+        let (mut low, mut high, mut left) = (near_s, near_s, most);
+        while !decays(low) {
+            left = left.checked_sub(1)?;
+            (high, low) = (low, low / step);
+        }
+        while low == high {
+            let longer = high * step;
+            match left.checked_sub(1) {
+                None => return Some(f64::INFINITY),
+                Some(fewer) => left = fewer,
+            }
+            if decays(longer) { (low, high) = (longer, longer) } else { high = longer }
+        }
+        while high > (1.0 + TOLERANCE) * low {
+            let middle = 0.5 * (low + high);
+            if decays(middle) { low = middle } else { high = middle }
+        }
+        Some(low)
     }
 
     /// Inadequate where a fast mode grows, marginal where one overshoots.

@@ -1,12 +1,14 @@
 //! The sampling margin σ of agents under (6)–(7): how much of the longest useful period is used.
 //!
-//! Not from the paper, derived for this software; `rates` derives λ and `held` the largest k. σ = h λ / k, which is ½ h λ where
-//! velocities are measured and commands act at once. All of it is local: M and Y are those of one state.
+//! Not from the paper, derived for this software; `rates` derives σ and `held` the largest k. All of it is local: M and Y are those of one
+//! state. At rest they miss what velocities and accelerations make of Y, which for ships is most of it; so that states on the way of the
+//! references are looked at, too.
 
 use forwardstep_sim::{Adaptive, DynamicsAt, Setup};
 
 use super::PracticalAnswer;
-use super::held::Hold;
+use super::held::{Hold, longest_period_s};
+use super::led::{Led, states};
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping};
 use crate::hypothesis::Named;
@@ -15,22 +17,24 @@ use crate::hypothesis::Named;
 /// is not in the model.
 pub const RECOMMENDED_MARGIN: f64 = 0.5;
 
-/// σ of the agent and the posture for which sampling is worst, at the start and between the starts of all.
+/// σ of the agent and the state for which sampling is worst, at the start, between the starts of all, and on the way of the references.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplingMargin {
     /// The worst at the start.
     pub start: MarginAt,
-    /// The worst of all postures that were looked at, those of the start included.
+    /// The worst of all that were looked at, those of the start included.
     pub worst: MarginAt,
-    /// Postures that were looked at.
+    /// Postures that were looked at, at rest but for the start.
     pub postures: usize,
+    /// States that references lead through that were looked at.
+    pub led: usize,
     /// h, s.
     pub period_s: f64,
     /// How commands reach the robot.
     pub hold: Hold,
-    /// The period at which σ is 1 in the worst of them, s; `None` where the delay is too long for any.
+    /// The first period at which σ is 1 in one of them, s; `None` where the delay is too long for any.
     pub longest_s: Option<f64>,
-    /// The period at which it is [`RECOMMENDED_MARGIN`], s.
+    /// The first at which it is [`RECOMMENDED_MARGIN`], s.
     pub recommended_s: Option<f64>,
     /// σ of the damping alone does not exceed this at any position of any agent, by certified bounds of M; `None` without those.
     pub anywhere: Option<f64>,
@@ -39,21 +43,37 @@ pub struct SamplingMargin {
     pub adaptation_left_out: usize,
 }
 
-/// σ at one posture.
+/// σ in one state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarginAt {
     /// The agent.
     pub agent: Named,
+    /// When references lead it there, s; `None` at rest and at the start.
+    pub led_s: Option<f64>,
     /// σ.
     pub sigma: f64,
     /// The same for the damping alone.
     pub damping_sigma: f64,
     /// ½ h λ_max(M⁻¹ (K + ½ h P)), where that says something: nothing is late or filtered, and the agent adapts.
     pub frozen_sigma: Option<f64>,
+    /// Whether a mode grows, by the damping alone or, with Y frozen, by damping and adaptation together.
+    pub is_unstable: bool,
     /// λ_max(M⁻¹ K), the fastest mode, 1/s.
     pub fastest_per_s: f64,
-    /// λ, 1/s: the same where nothing adapts.
-    pub sampled_per_s: f64,
+}
+
+/// Where a margin is looked at.
+struct Looked {
+    agent: usize,
+    rates: Rates,
+    at: At,
+}
+
+#[derive(PartialEq)]
+enum At {
+    Start,
+    Rest,
+    Led { t_s: f64 },
 }
 
 impl SamplingMargin {
@@ -61,30 +81,25 @@ impl SamplingMargin {
     pub fn of(setup: &Setup) -> Option<SamplingMargin> {
         let control = setup.control.as_ref()?;
         let (hold, period_s) = (Hold::of(control), 1.0 / control.sample_hz);
-        let gains: Vec<Option<Gains>> = (0..setup.agents.len()).map(|agent| gains(setup, agent)).collect();
-        let those: Vec<usize> = (0..gains.len()).filter(|agent| gains[*agent].is_some()).collect();
-        let (mut start, mut worst): (Option<MarginAt>, Option<MarginAt>) = (None, None);
-        let mut postures = 0;
-        each_posture(setup, &those, |agent, q, at_start| {
-            postures += 1;
-            let rates = gains[agent].as_ref().and_then(|gains| gains.rates(&resting(setup, agent, q, at_start)?));
-            let Some(rates) = rates else { return };
-            let found = || MarginAt::of(Named::of(setup, agent), &rates, hold, period_s);
-            for worst in [Some(&mut worst), at_start.then_some(&mut start)].into_iter().flatten() {
-                if worst.as_ref().is_none_or(|worst| rates.sampled_per_s > worst.sampled_per_s) {
-                    *worst = Some(found());
-                }
-            }
-        });
-        let (start, worst) = (start?, worst?);
+        let looked = looked(setup);
+        let sigma = |looked: &Looked| looked.rates.sigma(hold, period_s);
+        let worst_of = |those: &mut dyn Iterator<Item = &Looked>| -> Option<MarginAt> {
+            let worst = those.map(|looked| (looked, sigma(looked))).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+            Some(MarginAt::of(setup, worst.0, hold, period_s))
+        };
+        let start = worst_of(&mut looked.iter().filter(|looked| looked.at == At::Start))?;
+        let worst = worst_of(&mut looked.iter())?;
         let anywhere_per_s = fastest_damping(setup).and_then(|found| found.anywhere_per_s);
         let learners = (0..setup.agents.len()).filter(|agent| setup.tracks(*agent));
+        let led = looked.iter().filter(|looked| matches!(looked.at, At::Led { .. })).count();
+        let longest = |at_most: f64| longest(&looked, period_s, &|_| hold, at_most);
         Some(SamplingMargin {
-            postures,
+            postures: looked.len() - led,
+            led,
             period_s,
             hold,
-            longest_s: hold.longest_period_s(worst.sampled_per_s, period_s),
-            recommended_s: hold.longest_period_s(worst.sampled_per_s / RECOMMENDED_MARGIN, period_s),
+            longest_s: longest(1.0),
+            recommended_s: longest(RECOMMENDED_MARGIN),
             anywhere: anywhere_per_s.map(|rate| period_s * rate / hold.largest_gain(period_s)),
             adaptation_left_out: learners.filter(|agent| setup.agents[*agent].law.is::<Adaptive>()).count(),
             start,
@@ -92,10 +107,17 @@ impl SamplingMargin {
         })
     }
 
-    /// Inadequate only where a mode is unstable at the start of an agent; not shown where one is at a posture between the starts, or
+    /// The period at which σ of a setup is 1, as [`SamplingMargin::longest_s`], where one near `near_s` is held as `hold` says, whatever its own
+    /// control is.
+    pub fn longest_period_s(setup: &Setup, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
+        let looked = looked(setup);
+        if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
+    }
+
+    /// Inadequate only where a mode is unstable at the start of an agent; not shown where one is in another state, or
     /// where V may grow from sample to sample though none is.
     pub fn answer(&self) -> PracticalAnswer {
-        if self.start.is_unstable() {
+        if self.start.is_unstable {
             PracticalAnswer::Inadequate
         } else if self.worst.sigma >= 1.0 {
             PracticalAnswer::NotShown
@@ -108,32 +130,70 @@ impl SamplingMargin {
 }
 
 impl MarginAt {
-    fn of(agent: Named, rates: &Rates, hold: Hold, period_s: f64) -> MarginAt {
-        let k = hold.largest_gain(period_s);
-        let [fastest_per_s, sampled_per_s] = [rates.damping_per_s, rates.sampled_per_s];
+    fn of(setup: &Setup, looked: &Looked, hold: Hold, period_s: f64) -> MarginAt {
+        let Looked { agent, rates, at } = looked;
+        let damping_sigma = period_s * rates.damping_per_s / hold.largest_gain(period_s);
         MarginAt {
-            agent,
-            sigma: period_s * sampled_per_s / k,
-            damping_sigma: period_s * fastest_per_s / k,
+            agent: Named::of(setup, *agent),
+            led_s: if let At::Led { t_s } = at { Some(*t_s) } else { None },
+            sigma: rates.sigma(hold, period_s),
+            damping_sigma,
             frozen_sigma: if hold.is_ideal() { rates.frozen(period_s) } else { None },
-            fastest_per_s,
-            sampled_per_s,
+            is_unstable: damping_sigma >= 1.0 || rates.grows(hold, period_s),
+            fastest_per_s: rates.damping_per_s,
         }
     }
+}
 
-    /// Whether a mode grows there, by the damping alone or, with Y frozen, by damping and adaptation together.
-    pub fn is_unstable(&self) -> bool {
-        self.damping_sigma >= 1.0 || self.frozen_sigma.is_some_and(|sigma| sigma >= 1.0)
+/// All states at which margins are looked at; of an agent whose M cannot be factored there, none.
+fn looked(setup: &Setup) -> Vec<Looked> {
+    let gains: Vec<Option<Gains>> = (0..setup.agents.len()).map(|agent| gains(setup, agent)).collect();
+    let those: Vec<usize> = (0..gains.len()).filter(|agent| gains[*agent].is_some()).collect();
+    let mut found = Vec::new();
+    let mut look = |agent: usize, dynamics: Option<DynamicsAt>, at: At| {
+        let rates = gains[agent].as_ref().zip(dynamics).and_then(|(gains, dynamics)| gains.rates(&dynamics));
+        found.extend(rates.map(|rates| Looked { agent, rates, at }));
+    };
+    each_posture(setup, &those, |agent, q, at_start| {
+        let at = if at_start { At::Start } else { At::Rest };
+        look(agent, resting(setup, agent, q, at_start), at);
+    });
+    for Led { agent, t_s, q, dq, dz } in states(setup, &those) {
+        let dz: Vec<f64> = dz.iter().map(|dz| dz + sign(setup, agent).copysign(*dz)).collect();
+        let dynamics = dynamics(&setup.agents[agent], &q, &dq, &dz);
+        look(agent, dynamics.filter(is_finite), At::Led { t_s });
     }
+    found
+}
+
+/// The first period from zero on at which σ of one of them is `at_most`; infinity where there is none, `None` where the delay is too long.
+fn longest(looked: &[Looked], near_s: f64, hold: &impl Fn(f64) -> Hold, at_most: f64) -> Option<f64> {
+    let mut longest_s = f64::INFINITY;
+    for Looked { rates, .. } in looked {
+        let decays = |period_s: f64| rates.sigma(hold(period_s), period_s) < at_most;
+        if longest_s.is_infinite() || !decays(longest_s) {
+            longest_s = longest_s.min(longest_period_s(near_s.min(longest_s), hold, decays)?);
+        }
+    }
+    Some(longest_s)
+}
+
+/// How far the sign lets ż of an agent jump where a leader is followed.
+fn sign(setup: &Setup, agent: usize) -> f64 {
+    setup.following().filter(|_| !setup.tracks(agent)).map_or(0.0, |following| following.gain)
+}
+
+/// Numbers that are all there.
+fn is_finite(dynamics: &DynamicsAt) -> bool {
+    dynamics.mass.iter().chain(&dynamics.regressor).all(|entry| entry.is_finite())
 }
 
 /// M and Y of an agent at `q`: with z = q̇, which is zero but at the start, and ż as large as the sign makes it where a leader is followed.
 fn resting(setup: &Setup, agent: usize, q: &[f64], at_start: bool) -> Option<DynamicsAt> {
     let own = &setup.agents[agent];
-    let dz = setup.following().filter(|_| !setup.tracks(agent)).map_or(0.0, |following| following.gain);
     let rest = vec![0.0; q.len()];
     let dq = if at_start { &own.start.dq } else { &rest };
-    dynamics(own, q, dq, dz)
+    dynamics(own, q, dq, &vec![sign(setup, agent); q.len()])
 }
 
 /// K and Γ of an agent as far as a margin counts them.

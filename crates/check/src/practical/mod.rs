@@ -7,6 +7,7 @@
 //! - `held`: how fast a mode may be under a command that is held, late, or taken from filtered differences.
 //! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
 //! - `margin`: the sampling margin σ before a run.
+//! - `led`: states that references lead robots through, at which it looks.
 //! - `linearised`: the same for one agent of any other kind, by differences.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
@@ -21,6 +22,7 @@ mod along;
 mod gains;
 mod held;
 mod injected;
+mod led;
 mod linearised;
 mod loads;
 mod margin;
@@ -36,7 +38,7 @@ use crate::instance::designed;
 pub use agreement::{AgreementBound, AxisBound};
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use gains::{NoReferenceGains, Over, ReferenceGains};
-pub use held::{Hold, longest_period_s};
+pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
 pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;

@@ -143,7 +143,7 @@ pub(crate) fn start_energy_j(setup: &Setup, index: usize, gains: &Gains) -> Opti
     let (q, dq) = (&agent.start.q, &agent.start.dq);
     let z = agent.start.reference.first().unwrap_or(dq);
     let s = DVector::from_iterator(dq.len(), dq.iter().zip(z).map(|(dq, z)| dq - z));
-    let mass = DMatrix::from_row_slice(q.len(), q.len(), &dynamics(agent, q, dq, 0.0)?.mass);
+    let mass = DMatrix::from_row_slice(q.len(), q.len(), &dynamics(agent, q, dq, &vec![0.0; q.len()])?.mass);
     let kinetic = 0.5 * s.dot(&(mass * &s));
     let Some(gamma) = &gains.adaptation else { return Some(kinetic) };
     let law: &Adaptive = agent.law.downcast()?;

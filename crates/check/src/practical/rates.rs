@@ -9,16 +9,29 @@
 //!        ≤ −½ h s⁺ᵀ [2 K − h (K M⁻¹ K + P)] s⁺,      with equality for δ = h M⁻¹ K s⁺
 //! ```
 //!
-//! so that V falls as long as σ = ½ h λ < 1 with λ the largest eigenvalue of K M⁻¹ K + P relative to K. Nothing about Y from sample to
-//! sample is used. Without adaptation λ = λ_max(M⁻¹ K). With Y frozen besides, a mode is unstable exactly above
+//! so that V falls as long as σ < 1 with σ the largest eigenvalue of ½ h (K M⁻¹ K + P) relative to K. Nothing about Y from sample to
+//! sample is used. Without adaptation σ = ½ h λ_max(M⁻¹ K). With Y frozen besides, a mode is unstable exactly above
 //! h λ_max(M⁻¹ (K + ½ h P)) = 2, which the head of `agent/mod.rs` of the core derives.
+//!
+//! Where commands come late, or velocities are filtered, the damping bears k in place of 2, and ℓ h P is taken from K (`held`):
+//!
+//! ```text
+//! σ = λ_max(K⁻¹ [(h/k) K M⁻¹ K + h (½ + ℓ) P])
+//! ```
+//!
+//! which is the same where neither is. That is no bound on V: it says that no mode grows while Y stays, to first order in ℓ. Of one axis and every late or
+//! filtered command no mode grows below σ = 0.98, as a test shows by the recursion of `held`.
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup};
 use nalgebra::{DMatrix, DVector};
 
+use super::held::Hold;
 use crate::inertia::Inertias;
+
+/// Of a multiplier that is one.
+const ROUNDING: f64 = 1e-7;
 
 /// K and Γ of one agent under (6)–(7), with all their entries.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,12 +46,18 @@ pub(crate) struct Gains {
 pub(crate) struct Rates {
     /// λ_max(M⁻¹ K), 1/s.
     pub(crate) damping_per_s: f64,
-    /// λ_max(K⁻¹ (K M⁻¹ K + P)), 1/s.
-    pub(crate) sampled_per_s: f64,
     mass: DMatrix<f64>,
     damping: DMatrix<f64>,
+    learning: Option<Learning>,
+}
+
+/// What adaptation adds.
+#[derive(Clone, Debug, PartialEq)]
+struct Learning {
     /// P.
-    learning: Option<DMatrix<f64>>,
+    p: DMatrix<f64>,
+    /// K M⁻¹ K.
+    kmk: DMatrix<f64>,
 }
 
 impl Gains {
@@ -51,7 +70,8 @@ impl Gains {
     /// K and Γ as they are stated for a robot, whatever its law; `None` where one cannot be resolved.
     pub(crate) fn resolved(agent: &AgentSetup, damping: &Gain, adaptation: Option<&Gain>) -> Option<Gains> {
         let axes = agent.robot.axes.len();
-        let DynamicsAt { mass, adaptation_scale, .. } = dynamics(agent, &agent.start.q, &agent.start.dq, 0.0)?;
+        let DynamicsAt { mass, adaptation_scale, .. } =
+            dynamics(agent, &agent.start.q, &agent.start.dq, &vec![0.0; agent.start.q.len()])?;
         let scale: Vec<f64> = mass.iter().copied().step_by(axes + 1).collect();
         let adaptation = match adaptation {
             None => None,
@@ -74,33 +94,49 @@ impl Gains {
     pub(crate) fn rates(&self, dynamics: &DynamicsAt) -> Option<Rates> {
         let m = self.damping.nrows();
         let mass = DMatrix::from_row_slice(m, m, &dynamics.mass);
-        let learning = self.adaptation.as_ref().map(|gamma| {
-            let y = DMatrix::from_row_slice(m, gamma.nrows(), &dynamics.regressor);
-            &y * gamma * y.transpose()
-        });
         let damping_per_s = largest(&mass, &self.damping)?;
-        let sampled_per_s = match &learning {
-            None => damping_per_s,
-            Some(p) => {
+        let learning = match &self.adaptation {
+            None => None,
+            Some(gamma) => {
+                let y = DMatrix::from_row_slice(m, gamma.nrows(), &dynamics.regressor);
                 let kmk = &self.damping * mass.clone().cholesky()?.solve(&self.damping);
-                largest(&self.damping, &(kmk + p))?
+                Some(Learning { p: &y * gamma * y.transpose(), kmk })
             }
         };
-        Some(Rates { damping_per_s, sampled_per_s, mass, damping: self.damping.clone(), learning })
+        Some(Rates { damping_per_s, mass, damping: self.damping.clone(), learning })
     }
 }
 
 impl Rates {
+    /// σ with the period h = `period_s`; infinite where it cannot be told.
+    pub(crate) fn sigma(&self, hold: Hold, period_s: f64) -> f64 {
+        let share = period_s / hold.largest_gain(period_s);
+        let Some(Learning { p, kmk }) = &self.learning else { return share * self.damping_per_s };
+        let learnt = period_s * (0.5 + hold.lag(period_s));
+        largest(&self.damping, &(share * kmk + learnt * p)).unwrap_or(f64::INFINITY)
+    }
+
+    /// Whether a mode grows from sample to sample where Y stays, by damping and adaptation together; not where nothing adapts.
+    pub(crate) fn grows(&self, hold: Hold, period_s: f64) -> bool {
+        if hold.is_ideal() {
+            return self.frozen(period_s).is_some_and(|sigma| sigma >= 1.0);
+        }
+        let Some((Learning { p, .. }, factor)) = self.learning.as_ref().zip(self.mass.clone().cholesky()) else {
+            return false;
+        };
+        hold.radius(period_s, &factor.solve(&self.damping), &factor.solve(p)) > 1.0 + ROUNDING
+    }
+
     /// ½ h λ_max(M⁻¹ (K + ½ h P)); `None` where nothing adapts. Above 1 damping and adaptation together are unstable where Y stays.
     pub(crate) fn frozen(&self, period_s: f64) -> Option<f64> {
-        let learning = self.learning.as_ref()?;
-        Some(0.5 * period_s * largest(&self.mass, &(&self.damping + 0.5 * period_s * learning))?)
+        let Learning { p, .. } = self.learning.as_ref()?;
+        Some(0.5 * period_s * largest(&self.mass, &(&self.damping + 0.5 * period_s * p))?)
     }
 }
 
-/// M, Y and the scale of ϑ of an agent at one state, where z = q̇ and every entry of ż is `dz`.
-pub(crate) fn dynamics(agent: &AgentSetup, q: &[f64], dq: &[f64], dz: f64) -> Option<DynamicsAt> {
-    let motion = TwoVelocity { q, dq, z: dq, dz: &vec![dz; q.len()] };
+/// M, Y and the scale of ϑ of an agent at one state, where z = q̇, with ż.
+pub(crate) fn dynamics(agent: &AgentSetup, q: &[f64], dq: &[f64], dz: &[f64]) -> Option<DynamicsAt> {
+    let motion = TwoVelocity { q, dq, z: dq, dz };
     agent.robot.kind.lagrangian()?.dynamics_at(&agent.robot.theta, motion).ok()
 }
 
@@ -147,7 +183,7 @@ pub(crate) fn fastest_damping_of(setup: &Setup, agents: &[usize], inertias: &mut
 
 /// λ_max(M⁻¹K) at the start, and what it does not exceed at any position, where that is known, 1/s: `known` if that suffices.
 fn damping_rates(agent: &AgentSetup, inertias: &mut Inertias, known: f64) -> Option<(f64, Option<f64>)> {
-    let DynamicsAt { mass, .. } = dynamics(agent, &agent.start.q, &agent.start.dq, 0.0)?;
+    let DynamicsAt { mass, .. } = dynamics(agent, &agent.start.q, &agent.start.dq, &vec![0.0; agent.start.q.len()])?;
     let axes = agent.robot.axes.len();
     let scale: Vec<f64> = mass.iter().copied().step_by(axes + 1).collect();
     let stated = gain(agent)?;
@@ -212,6 +248,55 @@ mod tests {
         Some((v(&next, &learnt)? - v(s, error)?, next))
     }
 
+    fn rates_of(mass: DMatrix<f64>, damping: DMatrix<f64>, p: DMatrix<f64>) -> Rates {
+        let kmk = &damping * mass.clone().cholesky().unwrap().solve(&damping);
+        let damping_per_s = largest(&mass, &damping).unwrap();
+        Rates { damping_per_s, mass, damping, learning: Some(Learning { p, kmk }) }
+    }
+
+    /// The largest multiplier of `held` for these.
+    fn radius(rates: &Rates, hold: Hold, period_s: f64) -> f64 {
+        let factor = rates.mass.clone().cholesky().unwrap();
+        hold.radius(period_s, &factor.solve(&rates.damping), &factor.solve(&rates.learning.as_ref().unwrap().p))
+    }
+
+    fn any_hold(late: f64, cut_off: f64, period_s: f64) -> Hold {
+        let cut_off_rad_s = (cut_off < 1e3).then_some(cut_off / period_s);
+        Hold { delay_s: late * period_s, cut_off_rad_s }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+        #[test]
+        fn prop_of_one_axis_no_mode_grows_below_the_margin_while_y_stays(
+            late in prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), 0.0..1.0_f64],
+            cut_off in prop_oneof![Just(1e9), 0.02..20.0_f64], share in 1e-3..1.0_f64, m in 0.1..10.0_f64, h in 1e-3..1.0_f64,
+        ) {
+            let hold = any_hold(late, cut_off, h);
+            let k = share * hold.largest_gain(h) * m / h;
+            let p = (1.0 - share) * k / (h * (0.5 + hold.lag(h)));
+            let one = |x: f64| DMatrix::from_element(1, 1, x);
+            let at = |sigma: f64| rates_of(one(m), one(sigma * k), one(sigma * sigma * p));
+            prop_assert!((at(1.0).sigma(hold, h) - 1.0).abs() < 1e-9 && (at(0.98).sigma(hold, h) - 0.98).abs() < 1e-9);
+            let below = at(0.98);
+            prop_assert!(radius(&below, hold, h) < 1.0 + ROUNDING && !below.grows(hold, h), "{}", radius(&below, hold, h));
+        }
+    }
+
+    /// A mode that is slow against the period grows exactly where ℓ h P is more than K.
+    #[test]
+    fn eq_what_is_learnt_late_is_taken_from_the_damping() {
+        let h = 0.01;
+        for (late, cut_off) in [(0.25, 1e9), (1.0, 1e9), (0.0, 0.3), (0.0, 5.0), (0.7, 0.3), (0.5, 3.0)] {
+            let (hold, p) = (any_hold(late, cut_off, h), 1e-2);
+            let one = |x: f64| DMatrix::from_element(1, 1, x);
+            let grows = |share: f64| rates_of(one(1.0), one(share * hold.lag(h) * h * p), one(p)).grows(hold, h);
+            let radius = |share: f64| radius(&rates_of(one(1.0), one(share * hold.lag(h) * h * p), one(p)), hold, h);
+            assert!(radius(0.99) > 1.0 && radius(1.01) < 1.0, "{late}, {cut_off}: {} {}", radius(0.99), radius(1.01));
+            assert!(!grows(1.01));
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
         #[test]
@@ -256,12 +341,12 @@ mod tests {
             };
             let rates = Gains { damping: damping.clone(), adaptation: Some(definite(p, &numbers[5..90], 0.02)) };
             let rates = rates.rates(&dynamics).unwrap();
-            let edge = 2.0 / rates.sampled_per_s;
+            let edge = 1.0 / rates.sigma(Hold::IDEAL, 1.0);
             let least = (2.0 * &damping - edge * (&kmk + &y * definite(p, &numbers[5..90], 0.02) * y.transpose()))
                 .symmetric_eigenvalues()
                 .min();
             prop_assert!(least.abs() < 1e-8 * (1.0 + damping.norm()), "{}", least);
-            prop_assert!(rates.sampled_per_s >= rates.damping_per_s * (1.0 - 1e-9));
+            prop_assert!(2.0 * rates.sigma(Hold::IDEAL, 1.0) >= rates.damping_per_s * (1.0 - 1e-9));
         }
     }
 }

@@ -30,10 +30,11 @@ pub(super) fn because(finding: &Finding) -> String {
 
 fn sampling(margin: &SamplingMargin) -> String {
     let SamplingMargin { start, worst, postures, .. } = margin;
-    let between = if rounded(worst.sigma) == rounded(start.sigma) {
-        String::new()
-    } else {
-        format!(", {} at most at {postures} postures between the starts ({})", rounded(worst.sigma), worst.agent.name)
+    let (sigma, name) = (rounded(worst.sigma), &worst.agent.name);
+    let between = match worst.led_s {
+        _ if sigma == rounded(start.sigma) => String::new(),
+        Some(t_s) => format!(", and {sigma} on the way that its reference leads ({name} at {} s)", rounded(t_s)),
+        None => format!(", {sigma} at most at {postures} postures between the starts ({name})"),
     };
     let anywhere = margin.anywhere.filter(|anywhere| *anywhere < 1.0).map_or_else(String::new, |anywhere| {
         format!("; of the damping alone it is at most {} at any q", rounded_up(anywhere))
@@ -55,11 +56,13 @@ fn sampling(margin: &SamplingMargin) -> String {
 
 /// What σ from 1 on means.
 fn too_slow(SamplingMargin { start, worst, .. }: &SamplingMargin) -> &'static str {
-    if start.is_unstable() && start.damping_sigma < 1.0 {
+    if start.is_unstable && start.damping_sigma < 1.0 {
         "; damping and adaptation together are unstable at the start: let Γ be smaller, or sample faster"
-    } else if start.is_unstable() {
+    } else if start.is_unstable {
         "; sampling is too slow at the start: the fastest mode grows"
-    } else if worst.is_unstable() {
+    } else if worst.is_unstable && worst.led_s.is_some() {
+        "; sampling is too slow for it there"
+    } else if worst.is_unstable {
         "; sampling is too slow at such a posture"
     } else if worst.sigma < 1.0 {
         ""

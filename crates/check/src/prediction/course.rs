@@ -13,7 +13,7 @@ use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal, start_error, told_before};
 use super::settled::{Settled, settled};
 use super::torque::{PeakTorque, peak_torques};
-use super::unfinished::{Unfinished, completed};
+use super::unfinished::{Unfinished, completed, simulated};
 
 /// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +122,13 @@ pub fn course_within(
     let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
     let start = StartError::of(setup);
     Ok(Course { disagreement, value, within, settled, peak_torques, start, t_s: recording.t_s })
+}
+
+/// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.
+pub(crate) fn reference_alone(setup: &Setup, mut work: f64) -> Option<Recording> {
+    let ideal = ideal(setup).ok()?;
+    let before = told_before(setup, &ideal);
+    Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
 }
 
 /// The positions of all agents on an axis.

@@ -26,8 +26,8 @@ mod torque;
 mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
-pub(crate) use course::disagreement;
 pub use course::{COURSE_WORK, Course, NoCourse, StartError, course, course_within};
+pub(crate) use course::{disagreement, reference_alone};
 pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat, guaranteed_rate};
 pub use ideal::{NoIdeal, ideal, told_before};
 pub(crate) use ideal::{family_start, order};

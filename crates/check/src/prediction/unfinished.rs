@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::{Ending, Progress, Recording, Setup, SetupError, simulate, simulate_told};
+use forwardstep_sim::{Ending, Outcome, Progress, Recording, Setup, SetupError, simulate, simulate_told};
 use thiserror::Error;
 
 /// Why the reference dynamics alone were not simulated to the end.
@@ -40,6 +40,24 @@ pub(super) fn completed(
     work: &mut f64,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Recording, Unfinished> {
+    let (outcome, reached_s) = simulated(ideal, before, work, observer)?;
+    match outcome.ending {
+        Ending::Completed => Ok(outcome.recording),
+        Ending::Interrupted { .. } | Ending::CutOff { .. } if *work < 0.0 => {
+            Err(Unfinished::TooMuchWork { t_s: reached_s, end_s: ideal.time.end_s })
+        }
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => Err(Unfinished::Interrupted),
+        Ending::BrokeDown(breakdown) => Err(Unfinished::BrokeDown { t_s: breakdown.t_s }),
+    }
+}
+
+/// The same however it ends, and how far it came, s.
+pub(super) fn simulated(
+    ideal: &Setup,
+    before: Option<&[Vec<f64>]>,
+    work: &mut f64,
+    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(Outcome, f64), SetupError> {
     let (per_step, mut reached_s) = (step_work(ideal), 0.0);
     let mut counting = |progress: Progress| {
         *work -= per_step;
@@ -50,14 +68,7 @@ pub(super) fn completed(
         Some(before) => simulate_told(ideal, before, &mut counting)?,
         None => simulate(ideal, &mut counting)?,
     };
-    match outcome.ending {
-        Ending::Completed => Ok(outcome.recording),
-        Ending::Interrupted { .. } | Ending::CutOff { .. } if *work < 0.0 => {
-            Err(Unfinished::TooMuchWork { t_s: reached_s, end_s: ideal.time.end_s })
-        }
-        Ending::Interrupted { .. } | Ending::CutOff { .. } => Err(Unfinished::Interrupted),
-        Ending::BrokeDown(breakdown) => Err(Unfinished::BrokeDown { t_s: breakdown.t_s }),
-    }
+    Ok((outcome, reached_s))
 }
 
 /// What a step takes, in nanoseconds, roughly: itself, seven evaluations of all states and of all that is heard, and the pieces of a delay among which

@@ -1,4 +1,4 @@
-//! The longest period with which a scenario still works, measured by its own runs, beside the one that the sampling margin allows.
+//! The longest period with which a scenario still works, measured by its own runs, beside the one that rules allow.
 //!
 //! A run works where it completes, no |s| exceeds what is accepted, and what remains of the disagreement, or of the error, does not
 //! either. What is accepted is stated, or taken from a run with a period far below the rule. The period is then bisected: where works and
@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_check::{Hold, SamplingMargin, longest_period_s};
+use forwardstep_check::{Hold, LinearisedSampling, SamplingMargin};
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::{Control, Setup, SetupError, VelocitySensor, simulate};
 
@@ -14,7 +14,8 @@ use super::metrics::{Disagreement, Metrics};
 
 /// The run that others are compared with has a period this much shorter than the rule.
 const FINER: f64 = 8.0;
-/// A run whose |s| is this much larger than in that one does not work.
+/// A run whose |s| is this much larger than in that one, and larger than its |z|, does not work. Where s is zero without sampling, sampling
+/// alone makes it, as much as the period is long.
 const LARGER: f64 = 2.0;
 /// Nor one that leaves this much of the disagreement at the start, unless that one leaves half as much already.
 const REMAINS: f64 = 0.1;
@@ -32,10 +33,19 @@ pub struct Deployment {
     pub filter_hz: Option<f64>,
 }
 
+/// The longest period by rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// It, s.
+    pub period_s: f64,
+    /// A fast mode of an agent outside (6)–(7), linearised at its start, stops to decay there; else the sampling margin is 1.
+    pub linearised: bool,
+}
+
 /// What a run must keep within to count as one that works.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accepted {
-    /// The largest |s| of any axis, rad/s or m/s; by default twice that of a run with a short period.
+    /// The largest |s| of any axis, rad/s or m/s; by default twice that of a run with a short period, or as much as |z| comes to there.
     pub peak_error: Option<f64>,
     /// The final disagreement or error; by default a tenth of that at the start, or twice that of the same run.
     pub remains: Option<f64>,
@@ -48,6 +58,8 @@ pub struct Trial {
     pub period_s: f64,
     /// Its largest |s|; not finite where the run did not complete.
     pub peak_error: f64,
+    /// Its largest |z|, where there is a z that s is measured from.
+    pub peak_reference: f64,
     /// Its final disagreement or error; likewise.
     pub remains: f64,
     /// That at its start.
@@ -57,8 +69,8 @@ pub struct Trial {
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplingLimit {
-    /// The period at which the sampling margin is 1 before the run, s; `None` where it says nothing.
-    pub rule_s: Option<f64>,
+    /// What rules promise before the run; `None` where they say nothing.
+    pub rule: Option<Rule>,
     /// The longest period that works, s; `None` where the shortest one does not.
     pub measured_s: Option<f64>,
     /// What was accepted.
@@ -88,11 +100,16 @@ impl Deployment {
         sampled
     }
 
-    /// The period at which the sampling margin is 1, s.
-    pub fn rule_s(self, setup: &Setup) -> Option<f64> {
+    /// The period up to which rules promise that samples are fast enough, s.
+    pub fn rule(self, setup: &Setup) -> Option<Rule> {
         let period_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
         let hold = |period_s: f64| self.apply(setup, period_s).control.as_ref().map_or(Hold::IDEAL, Hold::of);
-        longest_period_s(SamplingMargin::of(&self.apply(setup, period_s))?.worst.sampled_per_s, period_s, hold)
+        let margin_s = SamplingMargin::longest_period_s(setup, period_s, hold);
+        let linearised_s = LinearisedSampling::longest_period_s(period_s, |period_s| self.apply(setup, period_s));
+        let margin = margin_s.map(|period_s| Rule { period_s, linearised: false });
+        let linearised = linearised_s.map(|period_s| Rule { period_s, linearised: true });
+        let both = margin.into_iter().chain(linearised).filter(|rule| rule.period_s.is_finite());
+        both.reduce(|a, b| if b.period_s < a.period_s { b } else { a })
     }
 
     /// The computation delay at a period, s.
@@ -113,9 +130,9 @@ impl SamplingLimit {
         accepted: Accepted,
         watch: &mut dyn FnMut(Trial),
     ) -> Result<SamplingLimit, SetupError> {
-        let rule_s = deployment.rule_s(setup).filter(|rule_s| rule_s.is_finite());
+        let rule = deployment.rule(setup);
         let stated_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
-        let first_s = rule_s.map_or(stated_s, |rule_s| rule_s / FINER);
+        let first_s = rule.map_or(stated_s, |rule| rule.period_s / FINER);
         let first_s = first_s.max(1.001 * deployment.delay_s(setup, first_s));
         let mut trials = Vec::new();
         let mut run = |period_s: f64| {
@@ -125,11 +142,11 @@ impl SamplingLimit {
             Ok::<Trial, SetupError>(trial)
         };
         let first = run(first_s)?;
-        let peak_error = accepted.peak_error.unwrap_or(LARGER * first.peak_error);
+        let peak_error = accepted.peak_error.unwrap_or((LARGER * first.peak_error).max(first.peak_reference));
         let remains = accepted.remains.unwrap_or((LARGER * first.remains).max(REMAINS * first.initial));
         let works = |trial: Trial| trial.peak_error <= peak_error && trial.remains <= remains;
         let measured_s = if works(first) { Some(bisect(first_s, |period_s| Ok(works(run(period_s)?)))?) } else { None };
-        Ok(SamplingLimit { rule_s, measured_s, peak_error, remains, trials })
+        Ok(SamplingLimit { rule, measured_s, peak_error, remains, trials })
     }
 }
 
@@ -159,11 +176,15 @@ fn trial(setup: &Setup, period_s: f64) -> Result<Trial, SetupError> {
         Disagreement::Absent(_) => (0.0, 0.0),
     };
     if outcome.ending != Ending::Completed {
-        return Ok(Trial { period_s, peak_error: f64::INFINITY, remains: f64::INFINITY, initial });
+        let lost = f64::INFINITY;
+        return Ok(Trial { period_s, peak_error: lost, peak_reference: lost, remains: lost, initial });
     }
-    let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::TrackingError);
-    let peak_error = errors.flat_map(|column| &column.values).fold(0.0_f64, |most, s| most.max(s.abs()));
-    Ok(Trial { period_s, peak_error, remains: last, initial })
+    let peak = |signal: Signal| {
+        let columns = outcome.recording.columns.iter().filter(|column| column.signal == signal);
+        columns.flat_map(|column| &column.values).fold(0.0_f64, |most, value| most.max(value.abs()))
+    };
+    let [peak_error, peak_reference] = [Signal::TrackingError, Signal::Reference(0)].map(peak);
+    Ok(Trial { period_s, peak_error, peak_reference, remains: last, initial })
 }
 
 #[cfg(test)]

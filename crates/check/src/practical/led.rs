@@ -1,0 +1,78 @@
+//! States that references lead robots through before any robot is simulated: along the linear reference dynamics with s ≡ 0, along the
+//! motion of a leader, along a target. A sample, no proof.
+
+use forwardstep_core::controller::Jet;
+use forwardstep_sim::Setup;
+use forwardstep_sim::recording::Signal;
+use forwardstep_sim::trajectory::Trajectory;
+
+use super::along::Columns;
+use crate::prediction::reference_alone;
+
+/// States that are looked at in all, and of one agent.
+const MOST: usize = 1024;
+const MOST_OF_ONE: usize = 200;
+
+/// Work for the reference dynamics, in nanoseconds, roughly: what they reach with it is looked at.
+const WORK: f64 = 2e8;
+
+/// A state: q, z = q̇ and ż.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Led {
+    pub(super) agent: usize,
+    pub(super) t_s: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) dq: Vec<f64>,
+    pub(super) dz: Vec<f64>,
+}
+
+/// States of `agents` on their way; none where nothing is known of it, or there are too many.
+pub(super) fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
+    let each = (MOST / agents.len().max(1)).min(MOST_OF_ONE);
+    if each < 2 {
+        return Vec::new();
+    }
+    let leader = setup.following().and_then(|following| Some(&following.motion()?.trajectory));
+    let shared = agents.iter().any(|agent| !setup.tracks(*agent)) && leader.is_none();
+    let alone = if shared { reference_alone(setup, WORK) } else { None };
+    let columns = alone.as_ref().map(|recording| (Columns::of(recording), &recording.t_s));
+    let mut found = Vec::new();
+    for &agent in agents {
+        let own = &setup.agents[agent];
+        let motion = if setup.tracks(agent) { own.target.as_ref() } else { leader };
+        match motion {
+            Some(motion) if motion.axes() == own.robot.axes.len() => {
+                found.extend(along(motion, agent, setup.time.end_s, each));
+            }
+            Some(_) => {}
+            None => {
+                let axes = own.robot.axes.len();
+                found.extend(columns.iter().flat_map(|(columns, t_s)| recorded(columns, t_s, agent, axes, each)));
+            }
+        }
+    }
+    found
+}
+
+/// A motion at `each` times up to the end.
+fn along(motion: &Trajectory, agent: usize, end_s: f64, each: usize) -> impl Iterator<Item = Led> {
+    let mut jets = vec![Jet::default(); motion.axes()];
+    (0..each).map(move |step| {
+        let t_s = end_s * step as f64 / (each - 1) as f64;
+        motion.jets(t_s, &mut jets);
+        let derivative = |r: usize| jets.iter().map(|jet| jet[r]).collect();
+        Led { agent, t_s, q: derivative(0), dq: derivative(1), dz: derivative(2) }
+    })
+}
+
+/// An agent at `each` rows of so many, where they have all that is needed.
+fn recorded(columns: &Columns<'_>, t_s: &[f64], agent: usize, axes: usize, each: usize) -> Vec<Led> {
+    let mut rows: Vec<usize> = (0..each).map(|k| k * t_s.len().saturating_sub(1) / (each - 1)).collect();
+    rows.dedup();
+    let state = |row: usize| {
+        let signal = |signal| columns.at(agent, signal, axes, row);
+        let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
+        Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz? })
+    };
+    rows.into_iter().filter_map(state).collect()
+}
