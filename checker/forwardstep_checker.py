@@ -111,8 +111,8 @@ def read_certificate(text):
     try:
         return Node(json.loads(
             text, object_pairs_hook=lambda items: dict(items) if len(dict(items)) == len(items) else no("an object has a key twice"),
-            parse_float=no_number, parse_constant=no_number,
-            parse_int=lambda digits: int(digits) if len(digits) <= 30 else no("a whole number is too long")), "certificate")
+            parse_int=lambda digits: int(digits) if len(digits) <= 30 else no("a whole number is too long"),
+            parse_float=no_number, parse_constant=no_number), "certificate")
     except (RecursionError, ValueError) as error: no(f"is not JSON, or nested too deeply: {error}")
 
 def read_toml(text):
@@ -245,6 +245,7 @@ def sine(a, turned):
         if math.floor(max(turns)) >= math.ceil(min(turns)): low, high = min(low, extreme), max(high, extreme)
     return max(low, Fraction(-1)), min(high, Fraction(1))
 
+@functools.lru_cache(MOST_CELLS)
 def exp_at(x):
     if abs(x) > 1500: return (Fraction(2) ** 2000, INF) if x > 0 else (Fraction(0), Fraction(1, 1 << 2000))
     halvings = max(0, math.ceil(abs(x)).bit_length() + 1)
@@ -294,8 +295,7 @@ def magnitude(a): return (Fraction(0) if a[0] <= 0 <= a[1] else min(abs(a[0]), a
 
 def function(name, a):
     if (name == "sqrt" and a[0] < 0) or (name == "log" and a[0] <= 0):
-        nowhere = a[1] < 0 or (name == "log" and a[1] == 0)
-        raise (Undefined if nowhere else Undecided)(f"`{name}` may be of what it has no value for")
+        raise (Undefined if a[1] < 0 or (name == "log" and a[1] == 0) else Undecided)(f"`{name}` may be of what it has no value for")
     if name in ("neg", "abs"): return minus(a) if name == "neg" else magnitude(a)
     if name in ("sin", "cos"): return sine(a, name == "cos")
     right, zero, one = multiply(PI, (Fraction(1, 2),) * 2), (Fraction(0),) * 2, (Fraction(1),) * 2
@@ -386,8 +386,8 @@ def motion_of(entry, where): return formula(entry) if isinstance(entry, str) els
 # The formulas that a formula is made of.
 def parts_of(tree): return [part for part in tree[1:] if isinstance(part, tuple)] if tree[0] != "points" else []
 
-# What was found of a tree is kept with it, so that a part that stands in many places is looked at once.
-KEPT = {}
+# What was found of a tree is kept with it, so that a part that stands in many places is looked at once. Of equal trees one is `unique`.
+KEPT, unique = {}, functools.lru_cache(MOST_CELLS)(lambda tree: tree)
 
 def once(of):
     def kept_(tree, *about):
@@ -461,7 +461,7 @@ def rooted_out(tree, t):
     even, odd = ([part for part in factors_of(tree) if bool(quotient(squared(part))) == is_one] for is_one in (True, False))
     decided(even and even + odd != [tree], "is no product with a root")
     signs = [(Fraction(1 if a >= 0 else -1), Fraction(1 if b > 0 else -1)) for a, b in (enclose(x, LATER if t == END else t) for x in even)]
-    whole = function("sqrt", COMBINED["max"](by_quotient(functools.reduce(times, map(squared, even)), t), (Fraction(0),) * 2))
+    whole = function("sqrt", COMBINED["max"](by_quotient(unique(functools.reduce(times, map(squared, even))), t), (Fraction(0),) * 2))
     return functools.reduce(multiply, signs + [enclose(part, t) for part in odd], whole)
 
 # What a power of t bounds, and the exponential of a quotient of polynomials: of |p| ≤ c tⁿ and g ≤ −r t, r > 0, the product p exp(g)
@@ -469,7 +469,7 @@ def rooted_out(tree, t):
 def damped(tree, t):
     powers, rest = ([part for part in factors_of(tree) if (part[:2] == ("f", "exp")) == is_one] for is_one in (True, False))
     falls = -enclose(("/", functools.reduce(plus, (part[2] for part in powers)), ("t",)), t)[1] if powers else 0
-    over = (("/", functools.reduce(times, rest, ONE), ("^", ("t",), Fraction(n)) if n else ONE) for n in range(9))
+    over = (("/", unique(functools.reduce(times, rest, ONE)), ("^", ("t",), Fraction(n)) if n else ONE) for n in range(9))
     found = falls > 0 and next(((n, x) for n, p in enumerate(over) if not infinite(x := size(attempt(rooted_out, p, t) or WHOLE))), None)
     n, most = decided(found, "is not damped") or found
     if infinite(falls) or t == END: return (Fraction(0),) * 2
@@ -487,7 +487,7 @@ def weighed(tree, out=True, whole=False):
     a, b = (weighed(x, out, whole) for x in (tree[1], ("^", tree[2], Fraction(-1)) if kind == "/" and has_variable(tree[2]) else tree[2]))
     if kind in "+-": return a + [(x if kind == "+" else minus(x), q) for x, q in b]
     decided(len(a) * len(b) <= 1000, "a formula has too many terms")
-    return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, times(p, q)) for (x, p), (y, q) in itertools.product(a, b)]
+    return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, unique(times(p, q))) for (x, p), (y, q) in itertools.product(a, b)]
 
 # Sines and cosines of one angle together: a sin φ + b cos φ keeps within ± √(a² + b²). The rest may tell more where its factors stay
 # together.
@@ -552,12 +552,13 @@ def partial(tree): return tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("
 ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 
 # Whether a formula has a value, and bounded slopes on bounded sets, in every state; undecided where enclosures do not tell.
-def everywhere(tree):
+# So many derivatives of it are taken.
+def everywhere(tree, taken=1):
     broken = tree[0] == "^" and tree[2].denominator > 1
-    # Above one the slope of a power is bounded at zero.
+    # Above one the slope of a power is bounded at zero, and above two that of its slope.
     low = enclose(tree[1] if broken else tree[2], WHOLE)[0] if broken or tree[:2] in (("f", "log"), ("f", "sqrt")) else INF
-    decided(low > 0 or low == 0 and broken and tree[2] > 1, "a root or a logarithm may be of what is not positive")
-    return (tree[0] not in ("/", "^") or enclose(tree, WHOLE) is not None) and all(map(everywhere, parts_of(tree)))
+    decided(low > 0 or low == 0 and broken and tree[2] > taken, "a root or a logarithm may be of what is not positive")
+    return (tree[0] not in ("/", "^") or enclose(tree, WHOLE) is not None) and all(everywhere(part, taken) for part in parts_of(tree))
 
 def negated(tree): return tree if tree == ZERO else ("f", "neg", tree)
 
@@ -634,12 +635,12 @@ LAGRANGIAN, ARMS, MASS = ("planar_arm", "point_mass", "ship", "urdf"), ("planar_
 # Each law, the robots that it is made for, and the keys of its gains. What is not written is positive by default.
 LAWS = {
     "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
-    "position_only": (MASS, "damping filter_per_s adaptation_gain"), "model_reference": (MASS, "filter_per_s adaptation_gain"),
+    "position_only": (MASS, "damping filter_per_s adaptation_gain"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
     "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
     "task_space": (ARMS, "damping adaptation_gain task_gain kinematic_gain torque_share reference_gain_per_s attitude_gain"),
     "attitude": (("spacecraft",), "error_gain_per_s2 rate_gain_per_s filter_gain_per_s damping"),
-    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"),
-    "linearising": (("chain", "vector_chain"), "gain_per_s"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
+    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
+    "model_reference": (MASS, "filter_per_s adaptation_gain"),
     "adaptive_backstepping": (("strict_feedback", "pure_feedback"), "gains_per_s adaptation_gain"),
     "passivity_filter": (("spacecraft",), "error_gain_n_m filter_gain_per_s damping")}
 MADE_FOR, GAINS = ({law: of[k] for law, of in LAWS.items()} for k in (0, 1))
@@ -657,14 +658,13 @@ DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlin
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
 CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command message_timeout_s"
 
-# An agent: its name, robot, law, roots, λ, target, and the entry of the file that it comes from.
+# An agent: its name, robot, law, roots, λ, target, and the entry of the file that it comes from, with its place.
 class Agent:
     def __init__(self, name, index, entry, place):
         self.name, self.index, self.entry, self.place = name, index, entry, place
         self.robot, self.body = chosen(entry.get("robot"), f"{place}.robot", USUAL_LAW, "robots")
         table(self.body, f"{place}.robot.{self.robot}")
-        self.enforced = entry.get("enforce_limits", False) is not False
-        self.roots, self.manipulability, self.pushes, self.target = [], Fraction(0), [], None
+        self.enforced, self.pushes = entry.get("enforce_limits", False) is not False, []
 
     # The table of its law that has gains: of vehicles that of the design.
     def settings(self):
@@ -726,7 +726,7 @@ def alone(body): return body.get("follows_target", False) and not (body.get("hea
 class Scenario:
     # `given` are the edges that were drawn, graph by graph.
     def __init__(self, text, folder, given=()):
-        self.file, self.folder, self.inputs, self.given = read_toml(text), folder, {}, iter(given)
+        self.file, self.folder, self.inputs, self.agents, self.given = read_toml(text), folder, {}, [], iter(given)
         file = table(self.file, "the scenario", "format title time agents reference leader law start network control "
                      "external_wrenches solver goal")
         such(file.get("format") == 2, "`format` must be 2")
@@ -734,17 +734,18 @@ class Scenario:
         self.desired, self.polynomial, (self.reference, body) = designed(*choice(file.get("reference"), "reference"))
         self.body = table(body, "reference", DESIRED if self.reference == "desired" else REFERENCE)
         known(self.reference, ("consensus", "pure_integral", "backstepping", "leader", "tracking", "desired"), "reference dynamics")
-        self.agents = []
-        for k, entry in enumerate(listed(file.get("agents"), "agents")): self.populate(table(entry, "agents", AGENT), f"agents[{k}]")
+        self.entries = {f"agents[{k}]": table(x, "agents", AGENT) for k, x in enumerate(listed(file.get("agents"), "agents"))}
+        for place, entry in self.entries.items(): self.populate(entry, place)
         self.leader, self.motion, self.names = None, None, [agent.name for agent in self.agents]
         if self.reference == "leader": self.lead(table(file.get("leader"), "leader", "name motion agent"))
         self.index = {name: k for k, name in enumerate(self.names)}
         such(len(self.index) == len(self.names), "two agents have the same name")
-        for agent in self.agents: self.design(agent)
+        for agent in self.agents:
+            agent.roots, agent.manipulability, agent.tracks, agent.target = self.design(agent.place, agent.index == self.leader)
         self.control = table(file["control"], "control", CONTROL) if "control" in file else None
         self.read_network()
         if self.body.get("follows_target") and not self.used(): self.reference = "tracking"
-        self.pairs = [{(edge.source, edge.to) for edge in graph} for graph in self.graphs]
+        self.pairs = [{(edge.source, edge.to): edge for edge in graph} for graph in self.graphs]
         self.read_pushes()
 
     def populate(self, entry, place):
@@ -767,15 +768,16 @@ class Scenario:
         such(leader.get("agent", self.names[-1]) in self.names, "there is no agent of the name of the leader")
         self.leader = self.names.index(leader.get("agent", self.names[-1]))
 
-    # Roots, λ and the target of one agent: its own, else those of all. Who leads shares nothing with those that follow.
-    def design(self, agent):
-        leads = agent.index == self.leader
-        key, own = choice(agent.entry["reference"], "reference") if "reference" in agent.entry else (None, {})
-        such(key in (None, "tracking" if leads else self.reference), f"{agent.name} states reference dynamics of another kind")
+    # Roots, λ, whether there is a target to follow, and the target of the agents of an entry: their own, else those of all. Who leads
+    # shares nothing with those that follow.
+    @functools.cache
+    def design(self, place, leads):
+        key, own = choice(entry["reference"], "reference") if "reference" in (entry := self.entries[place]) else (None, {})
+        such(key in (None, "tracking" if leads else self.reference), f"{place} states reference dynamics of another kind")
         own = ({} if leads or self.reference == "leader" else self.body) | table(own, "reference")
-        agent.roots, agent.manipulability = roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain")
-        agent.tracks = leads or self.reference == "tracking" or self.body.get("follows_target", False)
-        if "target" in agent.entry: agent.target = self.trajectory(agent.entry["target"], f"target of {agent.name}")
+        tracks = leads or self.reference == "tracking" or self.body.get("follows_target", False)
+        target = self.trajectory(entry["target"], f"{place}.target") if "target" in entry else None
+        return roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain"), tracks, target
 
     def exchange(self):
         told = {"leader": "position_velocity", "backstepping": "position"}.get(self.reference, self.body.get("exchange"))
@@ -904,10 +906,10 @@ class Scenario:
 
     # Everybody hears as many others as the rule says; whom, is given.
     def drawn_edges(self, members, in_degree, body):
-        node = next(self.given, None)
+        node, able = next(self.given, None), set(members)
         decided(node is not None, "the edges of a random graph are drawn, and not given")
         pairs = [tuple(self.index.get(name.text()) for name in ends.each()) for ends in node.each()]
-        fit = all(len(ends) == 2 and set(ends) <= set(members) and ends[0] != ends[1] for ends in pairs) and len(set(pairs)) == len(pairs)
+        fit = all(len(ends) == 2 and able.issuperset(ends) and ends[0] != ends[1] for ends in pairs) and len(set(pairs)) == len(pairs)
         heard = collections.Counter(to for _, to in pairs) if fit else {}
         require(node, fit and all(heard[to] == in_degree for to in members), "are not edges that the rule can draw")
         return [Edge(*ends, *self.terms(body)) for ends in pairs]
@@ -968,9 +970,8 @@ class Scenario:
 
     # Whether the torque that a law asks for may not be applied.
     def limited(self):
-        control = self.control or {}
-        steps = exact(table(control.get("quantisation", {}), "quantisation").get("torque", 0), "torque")
-        return steps != 0 or {"torque_limit", "torque_rate_limit_per_s"} & set(control) or any(agent.enforced for agent in self.agents)
+        steps = exact(table((self.control or {}).get("quantisation", {}), "quantisation").get("torque", 0), "torque")
+        return steps != 0 or {"torque_limit", "torque_rate_limit_per_s"} & {*(self.control or {})} or any(a.enforced for a in self.agents)
 
     # [from, to, phase] of the certificate as numbers; None for who is unknown.
     def triple(self, node):
@@ -981,9 +982,8 @@ class Scenario:
     # The edge that such a triple means.
     def edge_at(self, node):
         *ends, phase = self.triple(node)
-        edges = [edge for edge in self.graphs[phase] if [edge.source, edge.to] == ends] if 0 <= phase < len(self.graphs) else []
-        require(node, edges, "is no edge of this phase")
-        return edges[0]
+        require(node, 0 <= phase < len(self.graphs) and tuple(ends) in self.pairs[phase], "is no edge of this phase")
+        return self.pairs[phase][tuple(ends)]
 
 # The bytes of a file and its text.
 def read(path):
@@ -1017,10 +1017,9 @@ def theorem(scenario):
              "task space": tip, "chain": "chains-track" if tracking else "chains-agree",
              "position only": "position-only-tracks" if tracking else "remark-7", "model reference": "model-reference"}
     if (kind := kinds.pop()) in named or tracking: return named.get(kind, "robots-track")
-    velocities, order = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents)
-    if scenario.reference == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
-    if scenario.reference == "backstepping": return "backstepping"
-    if scenario.reference != "consensus": return "theorem-1" if velocities else "remark-3"
+    velocities, order, how = scenario.exchange() == "position_velocity", max(len(agent.roots) for agent in agents), scenario.reference
+    if how == "consensus" and len({len(agent.roots) for agent in agents}) > 1: return "theorem-3-own-orders"
+    if how != "consensus": return how if how == "backstepping" else "theorem-1" if velocities else "remark-3"
     if not velocities or order == 1: return "theorem-3-first-order" if velocities else "theorem-3-positions"
     return "theorem-2" if order == 2 and all(agent.roots == agents[0].roots for agent in agents) else "theorem-3-velocities"
 
@@ -1070,14 +1069,12 @@ def requirements(scenario):
 def still(agent): return all(attempt(constant_for_ever, derivative(tree)) == 0 for tree in agent.target or [])
 
 # Who follows a target by roots.
-def rooted(scenario):
-    return [a for a in scenario.agents if a.tracks and a.law not in ROOTLESS and not scenario.polynomial]
+def rooted(scenario): return [a for a in scenario.agents if a.tracks and a.law not in ROOTLESS and not scenario.polynomial]
 
 # Whether measurements have noise, steps, or come from a filter.
 def inexact(control):
-    velocity = choice(control.get("velocity", "measured"), "velocity")[0]
     parts = [(table(control.get(k, {}), k), entry) for k in ("noise", "quantisation") for entry in ("position", "velocity", "tip_velocity")]
-    return velocity != "measured" or any(exact(part.get(entry, 0), entry) > 0 for part, entry in parts)
+    return choice(control.get("velocity", "measured"), "velocity")[0] != "measured" or any(exact(x.get(k, 0), k) > 0 for x, k in parts)
 
 # What may be spoken about robot by robot.
 SEVERAL = ("uniform-inertia", "hurwitz", "desired-dynamics")
@@ -1142,7 +1139,7 @@ def tiled(claim, windows, sequence):
         phases, at = [phase.count() - 1 for phase in stated.each()], ends[-1]
         require(stated, phases == sequence[at:at + len(phases)], "are not the phases that follow")
         # No edge leads to a leader, so that a root from which everybody is reached is the leader where there is one.
-        reach(claim.scenario, arborescence, root, phases)
+        reach(claim.scenario, arborescence, root, {*phases})
         ends.append(at + len(phases))
     require(windows, len(ends) > 1, "must be some")
     return ends
@@ -1177,24 +1174,27 @@ def along(claim, windows, longest_s, given=None):
     scenario, kind = claim.scenario, claim.kind
     require(claim.proof, (scenario.switching, given is None) == (("random", False) if kind == "drawn" else ("log", True)), f"is not {kind}")
     sequence = drawn(scenario, given) if given else scenario.logged
-    times, ends = [Fraction(0), *(end for *_, end in sequence)], tiled(claim, windows, [int(phase) - 1 for phase, *_ in sequence])
-    lengths = [times[b] - times[a] for a, b in zip(ends, ends[1:])] + [scenario.end_s - times[ends[-1]]]
-    require(longest_s, max(lengths) <= longest_s.number(), "is exceeded by a window, or by what is left after the last")
+    t, ends = [Fraction(0), *(end for *_, end in sequence)], tiled(claim, windows, [int(phase) - 1 for phase, *_ in sequence])
+    # How long they are, and how long one waits for the phase that completes a window, or in vain.
+    spans = [[t[b] - t[a], t[b - 1] - t[a]] for a, b in zip(ends, ends[1:])] + [[scenario.end_s - t[ends[-1]]] * 2]
+    longest, wait = map(max, zip(*spans))
+    require(longest_s, longest <= longest_s.number() and 2 * wait <= scenario.end_s, "is exceeded, or one waits for half of the run")
     return False
 
-# A group of agents that hear nobody outside of it in some phases.
-def closed(scenario, node, phases):
-    group = {scenario.index.get(name.text()) for name in node.each()}
-    require(node, group and None not in group, "must name agents")
-    for phase, (source, to) in ((phase, ends) for phase in phases for ends in scenario.pairs[phase]):
+# Groups of agents that hear nobody outside of their own in some phases, if they are disjoint.
+def closed(scenario, nodes, phases):
+    groups = [{scenario.index.get(name.text()) for name in node.each()} for node in nodes]
+    for node, group in zip(nodes, groups): require(node, group and None not in group, "must name agents")
+    place = {agent: k for k, group in enumerate(groups) for agent in group}
+    for phase, (source, to) in ((phase, ends) for phase in phases for ends in scenario.pairs[phase] if ends[1] in place):
         words = f"is not closed: {scenario.names[to]} hears {scenario.names[source]} in phase {phase + 1}"
-        require(node, to not in group or source in group, words)
-    return group
+        require(nodes[place[to]], place.get(source) == place[to], words)
+    return groups
 
 # Two disjoint groups, or one without the leader, that hear no agent outside themselves in what recurs: no tree, for ever.
 @rule("spanning-tree leader-reaches-all", "cut")
 def cut(claim, groups):
-    sets, leader = [closed(claim.scenario, group, claim.scenario.for_ever()) for group in groups.each()], claim.scenario.leader
+    sets, leader = closed(claim.scenario, groups.each(), claim.scenario.for_ever()), claim.scenario.leader
     if claim.id == "leader-reaches-all": require(groups, len(sets) == 1 and leader not in sets[0], "must be one group without the leader")
     else: require(groups, len(sets) > 1 and sum(map(len, sets)) == len(set().union(*sets)), "must be two or more that are disjoint")
 
@@ -1202,15 +1202,15 @@ def cut(claim, groups):
 @rule("leader-in-every-graph", "unheard")
 def unheard(claim, phase, group):
     require(phase, phase.count() - 1 in claim.scenario.for_ever(), "does not recur")
-    require(group, claim.scenario.leader not in closed(claim.scenario, group, [phase.count() - 1]), "must name agents, and not the leader")
+    require(group, claim.scenario.leader not in closed(claim.scenario, [group], [phase.count() - 1])[0], "must name agents alone")
 
 @rule("dwell-time", "shortest-phase")
 def shortest_phase(claim, shortest_s):
     require(shortest_s, 0 < shortest_s.number() <= min(claim.scenario.dwell, default=0), "is not below the shortest phase")
     return claim.scenario.switching != "log"
 
-# Those whose M, C and g the proofs use.
-def robots(scenario): return [agent for agent in scenario.agents if agent.law in ("adaptive", "known", "task_space")]
+# Those whose M, C and g the proofs use: of each entry one, like which all are.
+def robots(scenario): return {a.place: a for a in scenario.agents if a.law in ("adaptive", "known", "task_space")}.values()
 
 MOVING = ("revolute", "continuous", "prismatic")
 
@@ -1224,28 +1224,37 @@ def of_urdf(reader):
             raise Undecided("a URDF cannot be read here") from None
     return guarded
 
-# For every joint of a URDF that moves: whether it slides, whether one above it turns, its friction, and the mass and the pivots of the
-# central inertia of each body that it moves with its link, up to the next joints.
+# Three numbers of an element of a URDF.
+def numbers(element, key, usual="0 0 0"):
+    return [decimal(x) for x, _ in zip((usual if element is None else element.get(key, usual)).split(), range(3), strict=True)]
+
+def parallel(a, b): return all(a[k - 2] * b[k - 1] == a[k - 1] * b[k - 2] for k in range(3))
+
+# For every joint of a URDF that moves: whether it slides, its axis, the axes that those above it turn about, its friction, and of each
+# body that it moves with its link, up to the next joints, mass, pivots of the central inertia, and centre. To an axis that something
+# turns, be it a joint or a placement, the axis of that turn is added: one that is parallel to all is where it was, seen from each link.
 @of_urdf
 def links(agent, root, locked):
     found = []
 
     def body(link):
-        if (inertial := link.find("inertial")) is None: return 0, [0] * 3
+        if (inertial := link.find("inertial")) is None: return 0, [0] * 3, [0] * 3
         rows = [[decimal(inertial.find("inertia").get(f"i{k}", "0")) for k in row.split()] for row in ("xx xy xz", "xy yy yz", "xz yz zz")]
-        return decimal(inertial.find("mass").get("value")), pivots(rows) if any(map(any, rows)) else [0] * 3
+        inertia, centre = pivots(rows) if any(map(any, rows)) else [0] * 3, numbers(inertial.find("origin"), "xyz")
+        return decimal(inertial.find("mass").get("value")), inertia, centre
 
-    def visit(name, own, turned):
+    def visit(name, own, above):
         own.append(bodies[name])
         for joint in (joint for joint in joints if joint.find("parent").get("link") == name):
-            kind, child = joint.get("type"), joint.find("child").get("link")
-            such(kind in (*MOVING, "fixed"), "a joint is of a kind that no robot here has")
+            kind, child, axis = joint.get("type"), joint.find("child").get("link"), numbers(joint.find("axis"), "xyz", "1 0 0")
+            such(kind in (*MOVING, "fixed") and any(axis), "a joint is of a kind that no robot here has")
             moves, rubs = kind != "fixed" and joint.get("name") not in locked, (of.get("friction", "0") for of in joint.findall("dynamics"))
-            if moves: found.append((kind == "prismatic", turned, sum(map(decimal, rubs)), []))
-            visit(child, found[-1][-1] if moves else own, turned or moves and kind != "prismatic")
+            placed_ = [[i == k for i in range(3)] for k, angle in enumerate(numbers(joint.find("origin"), "rpy")) if angle and above]
+            if moves: found.append((kind == "prismatic", axis, above + placed_, sum(map(decimal, rubs)), []))
+            visit(child, found[-1][-1] if moves else own, above + placed_ + [axis] * (kind in MOVING[:2] and bool(moves or above)))
 
     bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
-    for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], False)
+    for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], [])
     return found
 
 # A joint of a URDF: `locked` is where it stands if it is.
@@ -1254,7 +1263,6 @@ Joint = collections.namedtuple("Joint", "kind moves locked axis rpy xyz")
 # The joints of a URDF from the tip to the base.
 @of_urdf
 def path(agent, root, locked):
-    numbers = lambda element, key, usual="0 0 0": [decimal(x) for x in (usual if element is None else element.get(key, usual)).split()]
     joints, link = {joint.find("child").get("link"): joint for joint in root.findall("joint")}, agent.gains["end_effector"]["link"]
     found = []
     while link in joints:
@@ -1354,24 +1362,31 @@ def frictions(scenario):
     found = set()
     for agent in (agent for agent in scenario.agents if "friction" in agent.body):
         kind, body = chosen(agent.body["friction"], "friction", ("ignore", "dry", "smooth"), "frictions")
-        force = body["coulomb"] if "coulomb" in body else [stated for _, _, stated, _ in links(scenario, agent)]
+        force = body["coulomb"] if "coulomb" in body else [stated for *_, stated, _ in links(scenario, agent)]
         found |= {kind for x in (force if isinstance(force, list) else [force]) if exact(x, "coulomb") and kind != "ignore"}
     return found
 
-# Every link that moves has mass and a central inertia ≻ 0, with all that is fixed to it: so 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and these
-# bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|, or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
+# M is positive definite at every q if no body has a negative mass or inertia, and every joint moves some: T = 0 leaves them at rest, and
+# from the base on no joint can move without moving what has mass, if it slides, or turning what has a central inertia ≻ 0, or a mass
+# beside the axis. It is so uniformly if M repeats with the angles, and depends on nothing else; or if every link that moves has mass
+# and a central inertia ≻ 0, with all that is fixed to it: 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and these bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|,
+# or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
 def solid(scenario, agent):
-    groups = [bodies for *_, bodies in links(scenario, agent)]
-    possible = all(mass >= 0 and min(found) >= 0 and len(found) == 3 for bodies in groups for mass, found in bodies)
-    whole = [any(mass > 0 and min(found) > 0 for mass, found in bodies) for bodies in groups]
-    # A link at an end that weighs nothing moves without effort.
-    moves = any(whole) and all(mass >= 0 for bodies in groups for mass, _ in bodies) and any(mass for mass, _ in groups[-1])
-    return moves and not decided(possible and all(whole), "a link of a URDF may have no inertia of its own")
+    found = links(scenario, agent)
+    possible = all(mass >= 0 and min(inertia) >= 0 and len(inertia) == 3 for *_, bodies in found for mass, inertia, _ in bodies)
+    whole = all(any(mass > 0 and min(inertia) > 0 for mass, inertia, _ in bodies) for *_, bodies in found)
+    felt = all(any(mass > 0 if slides else min(inertia) > 0 for mass, inertia, _ in bodies)
+               or bodies[0][0] > 0 and not parallel(axis, bodies[0][2]) for slides, axis, *_, bodies in found)
+    # A link at an end that is nothing moves without effort.
+    moves = all(mass >= 0 for *_, bodies in found for mass, *_ in bodies) and any(mass or any(own) for mass, own, _ in found[-1][-1])
+    return moves and not decided(possible and (whole or felt and not swung(found)), "a link of a URDF may have no inertia of its own")
 
-# q enters C and g by sines and cosines of angles, and by the travel of joints that slide where one above them turns.
-def unturned(scenario, agent):
-    slides = agent.robot == "urdf" and any(slides and turned for slides, turned, *_ in links(scenario, agent))
-    return not slides or decided(False, "directions of the axes of a URDF are not compared here")
+# Whether the travel of a joint that slides enters velocities: where one above it turns about another direction. About its own, what
+# turns keeps its distance from the axis, and gravity pulls by a constant along it.
+def swung(found): return any(slides and not all(parallel(axis, turn) for turn in above) for slides, axis, above, *_ in found)
+
+# q enters C and g by sines and cosines of angles, and by such travel.
+def unturned(scenario, agent): return agent.robot != "urdf" or not swung(links(scenario, agent)) or decided(False, "a slide may be turned")
 
 # Masses, lengths, centres of mass and central inertias of a planar arm.
 def planar(body):
@@ -1417,6 +1432,9 @@ def definite_inertia(scenario, agent):
     m, l_, c, i = planar(agent.body)
     a, b = (i[k] + m[k] * c[k] ** 2 for k in (0, 1))
     return min(m + l_ + [b]) > 0 and min(i) >= 0 and a * b + m[1] * l_[0] ** 2 * i[1] > 0
+
+# Backstepping takes one fewer of a strict-feedback chain than it has equations, and as many of a pure-feedback chain.
+def derivatives(a): return max(1, len(a.body.get("regressors", "")) - (a.robot == "strict_feedback")) if "_feedback" in a.robot else 1
 
 def terms(body):
     held = body.values() if isinstance(body, dict) else body if isinstance(body, list) else []
@@ -1479,19 +1497,18 @@ def all_constant(scenario):
 # What follows from the text alone, by (id, kind): from the scenario, and the agents that the claim names.
 TEXT = {(each, "text"): so for each, so in {
     "unbiased-acceleration": lambda s, _: not any(any(agent.settings().get("bias_m_s2", [])) for agent in s.agents),
-    "uniform-inertia": lambda s, _: all([definite_inertia(s, agent) for agent in robots(s)]),
+    "uniform-inertia": lambda s, _: all([definite_inertia(s, a) for a in robots(s)]), "constant-weights": lambda s, _: not s.varying(),
     "bounded-dynamics": lambda s, _: robots(s) and all(unturned(s, agent) for agent in robots(s)),
-    "defined-terms": lambda s, _: all(everywhere(term) for a in s.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
+    "defined-terms": lambda s, _: all(everywhere(term, derivatives(a)) for a in s.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
     # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
-    "own-orders": lambda s, _: all(a.roots for a in s.agents), "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs)),
-    "constant-weights": lambda s, _: not s.varying(), "no-delay": lambda s, _: all(rule_bound(edge.delay) == 0 for edge in s.used()),
+    "own-orders": lambda s, _: all(a.roots for a in s.agents), "no-delay": lambda s, _: all(rule_bound(e.delay) == 0 for e in s.used()),
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
-    "shared-design": lambda s, _: s.reference == "leader", "known-momentum": lambda _, own: not any(agent.pushes for agent in own),
+    "shared-design": lambda s, _: s.reference == "leader", "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
     "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
+    "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: parameters_hold(s),
+    "target-at-rest": lambda _, own: all(map(rests, own)), "lengths-within-bounds": lambda s, own: all(lengths_hold(s, a) for a in own),
     "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired, "set-valued-sign": lambda s, _: set_valued(s),
-    "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "target-at-rest": lambda _, own: all(map(rests, own)),
-    "parameters-within-bounds": lambda s, _: parameters_hold(s), "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
-    "lengths-within-bounds": lambda s, own: all(lengths_hold(s, agent) for agent in own)}.items()} | {
+    "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs))}.items()} | {
     ("lengths-within-bounds", "outside"): lambda s, own: not all(lengths_hold(s, agent) for agent in own),
     ("parameters-within-bounds", "outside"): lambda s, _: not parameters_hold(s), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
     # Of (3) and (23) delays may jump with the phases.
@@ -1560,6 +1577,7 @@ def followed(claim, node):
     return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
 # What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
+@once
 def rule_bound(delay):
     kind, body, _ = delay
     if kind == "constant_s": return not_negative(body, kind)
@@ -1575,8 +1593,7 @@ def rule_bound(delay):
         return mean + swing if kind == "sinusoid" else high
     known(kind, ("packets",), "delays")
     loss = choice(body["loss"], "loss")[1] if "loss" in body else {"probability": 0}
-    never = 0 in (loss.get("probability"), loss.get("enter"))
-    lost = 0 if never else 1 if loss.get("leave") == 1 else loss.get("most_consecutive")
+    lost = 0 if 0 in (loss.get("probability"), loss.get("enter")) else 1 if loss.get("leave") == 1 else loss.get("most_consecutive")
     return None if lost is None else (not_negative(lost, "most_consecutive") + 1) * period_s + latency + jitter
 
 # The largest held value of a log, or age of what is heard on a link whose packets are: the newest that has arrived; before the
@@ -1591,15 +1608,14 @@ def logged(scenario, edge):
     packets = [(decimal(row["send_s"]), decimal(row["delay_s"])) for row in rows if row.get("delay_s")]
     for arrives, sent in sorted((sent + delay, sent) for sent, delay in packets):
         if arrives <= scenario.end_s and sent > newest: worst, newest = max(worst, arrives - newest), sent
-    return max(worst, scenario.end_s - newest)
+    # An age as large as the run is bounded by that alone.
+    return such(2 * (worst := max(worst, scenario.end_s - newest)) <= scenario.end_s, "nothing is seen to arrive again", worst)
 
 # A rule bounds its delay for ever, an enclosure a formula; logs and drawn packets do up to the end of the run.
 @rule("bounded-delays", "delays")
 def delays(claim, bound_s, enclosures, given):
-    scenario, always, largest, ages, shown = claim.scenario, True, Fraction(0), {}, formulas(claim, enclosures)
-    for entry in given.each():
-        source, to, worst_s = entry.fields("from", "to", "worst_s")
-        ages[source.text(), to.text()] = worst_s
+    scenario, always, largest, shown = claim.scenario, True, Fraction(0), formulas(claim, enclosures)
+    ages = {(a.text(), b.text()): worst_s for a, b, worst_s in (entry.fields("from", "to", "worst_s") for entry in given.each())}
     for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used()}.values():
         (kind, body, _), worst = edge.delay, rule_bound(edge.delay)
         if kind == "formula_s":
@@ -1607,10 +1623,10 @@ def delays(claim, bound_s, enclosures, given):
             worst, always = shown[body][1], always and shown[body][2]
         elif kind in ("log", "hold_log"): worst, always = logged(scenario, edge), False
         elif worst is None:
-            link = scenario.names[edge.source], scenario.names[edge.to]
-            require(given, link in ages, f"lacks the link from {link[0]} to {link[1]}")
+            require(given, (link := (scenario.names[edge.source], scenario.names[edge.to])) in ages, f"lacks the link of {link}")
             worst, always = ages[link].number(), False
-            require(ages[link], worst >= not_negative(body.get("latency_s"), "latency_s"), "is below the latency")
+            # An age as large as the run is bounded by that alone.
+            require(ages[link], not_negative(body.get("latency_s"), "latency_s") <= worst <= scenario.end_s / 2, "is too small or too large")
         largest = max(largest, worst)
     require(bound_s, largest <= bound_s.number(), f"is exceeded: a delay may reach {said(largest)} s")
     return always
@@ -1764,7 +1780,9 @@ def bounded(claim, order, stretch):
     scenario, always, motions = claim.scenario, True, motions_of(claim)
     require(order, order.count() >= max(most for _, _, most in motions), "is too low for a law")
     decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
-    for tree, lowest, most in ((tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"):
+    # Agents of one entry share a target.
+    own = {(id(tree), lowest, most): (tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"}
+    for tree, lowest, most in own.values():
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
                 require(stretch, finite(tree, pieces(stretch, tree, scenario.end_s)), f"does not bound derivative {k}")
@@ -2019,7 +2037,7 @@ def outcome(scenario, entry, asked, spoken):
 # leaves one such u, and none of its entries is negative.
 def agreed(scenario, node):
     influence, = node.fields("influence")
-    stated = {pair_.each()[0].text(): pair_.each()[1].number() for pair_ in influence.each() if len(pair_.each()) == 2}
+    stated = {entry[0].text(): entry[1].number() for entry in map(Node.each, influence.each()) if len(entry) == 2}
     require(influence, set(stated) == set(scenario.names) and len(influence.each()) == len(stated), "must be [agent, share] of everybody")
     require(node, scenario.fixed() and not scenario.varying(), "is of no fixed network")
     shares, flow = [stated[name] for name in scenario.names], [Fraction(0)] * len(scenario.names)

@@ -17,6 +17,10 @@ fn refuted(setup: &Setup) -> Option<GraphEvidence> {
     Some(GraphEvidence::RefutedSwitching { words: schedule.words(), fault })
 }
 
+fn once(setup: &Setup, wait_s: f64, start_s: f64) -> GraphEvidence {
+    GraphEvidence::Once { wait_s, start_s, end_s: setup.time.end_s }
+}
+
 /// The smallest uniform window, or the groups that cut the network.
 pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
     if let Some(evidence) = refuted(setup) {
@@ -31,6 +35,7 @@ pub(crate) fn spanning_tree(setup: &Setup) -> Hypothesis {
             for_all_time,
             drawn: network.schedule.known().extent == Extent::Drawn,
         },
+        Window::Once { wait_s, start_s } => once(setup, wait_s, start_s),
         Window::EveryGraph => GraphEvidence::EveryGraph { graphs: network.schedule.graphs.len() },
         Window::Missing { start_s, for_ever, closed_groups } => GraphEvidence::Cut {
             start_s,
@@ -49,6 +54,7 @@ pub(crate) fn leader_reaches_all(setup: &Setup) -> Hypothesis {
     let network = &setup.network;
     let evidence = match network.schedule.window(network.agents, setup.time.end_s) {
         Window::Uniform { length_s, for_all_time, .. } => GraphEvidence::Reached { length_s, for_all_time },
+        Window::Once { wait_s, start_s } => once(setup, wait_s, start_s),
         Window::EveryGraph => GraphEvidence::Reached { length_s: 0.0, for_all_time: true },
         Window::Missing { start_s, for_ever, closed_groups } => {
             let until_s = (!for_ever).then_some(setup.time.end_s);

@@ -3,7 +3,12 @@
 //! With D = sup|ξ̇_0|∞ < γ, delays of at most T_ij on the edges, L the Laplacian of the followers with the weights to the leader and
 //! L c = D Σ_j w_ij T_ij, the error of ξ_i comes to c_i or less, see the head of `reference/following.rs` in the core. L is a
 //! nonsingular M-matrix where the leader reaches everybody, so that c is not negative, and whatever v has L v ≥ D Σ_j w_ij T_ij in
-//! all components is no smaller than c. Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on
+//! all components is no smaller than c.
+//!
+//! The sign is held for a period of δ, in continuous time as well as by controllers that sample: what it makes of a message at the end of the
+//! period is as old as the message was at its beginning, T_ij + δ, and between two such ends ξ_i moves along a straight line, which adds
+//! ½ δ D to what ξ_0 moves meanwhile. So T_ij + 1½ δ stands for T_ij throughout. Controllers that sample hear up to a period later
+//! besides, and once more where what is told was held. With a path of n agents that is n δ D and not δ D, however short the delays are. Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on
 //! rounding.
 
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
@@ -20,16 +25,24 @@ const MORE: f64 = 1e-9;
 /// A bound of what is left of q_i − q_0 behind a filter 1/(p + α), or one of two real roots whose product is α, in the unit of the axes;
 /// nothing where none could be verified, as of a leader that is an agent, of a delay without a bound, or of a weight that varies.
 pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
+    bound(following, &rows(setup, following, true)?)
+}
+
+/// About what held signs leave where every agent hears what its neighbours did a sign, or a sample, ago, however short delays are.
+pub(crate) fn held(setup: &Setup, following: &Following) -> Option<f64> {
+    bound(following, &rows(setup, following, false)?)
+}
+
+fn bound(following: &Following, rows: &[Row]) -> Option<f64> {
     let drive = following.drive_bound(None);
-    let rows = rows(setup)?;
     let needed: Vec<f64> = rows.iter().map(|row| drive * row.weight_s).collect();
     let most = needed.iter().copied().fold(0.0, f64::max);
     if !most.is_finite() {
         return None;
     }
     let asked: Vec<f64> = rows.iter().zip(&needed).map(|(row, each)| each + MORE * most * row.degree).collect();
-    let c = solved(&rows, &asked)?;
-    let exceeds = exceeds(&rows, &c, &needed);
+    let c = solved(rows, &asked)?;
+    let exceeds = exceeds(rows, &c, &needed);
     let largest = c.into_iter().fold(0.0, f64::max);
     exceeds.then_some(largest / following.alpha * (1.0 + 4.0 * f64::EPSILON)).filter(|bound| bound.is_finite())
 }
@@ -50,13 +63,14 @@ struct Row {
     degree: f64,
     /// How many they are.
     terms: usize,
-    /// Σ_j w_ij T_ij.
+    /// Σ_j w_ij (T_ij + 1½ δ) with what samples add, or as `held` has it.
     weight_s: f64,
     /// The followers among them, by their rows, with the weights.
     heard: Vec<(usize, f64)>,
 }
 
-fn rows(setup: &Setup) -> Option<Vec<Row>> {
+/// With the delays of messages if they are `late`.
+fn rows(setup: &Setup, following: &Following, late: bool) -> Option<Vec<Row>> {
     let edges = setup.network.schedule.constant_graph()?;
     if let SpanningTree::Missing { .. } = spanning_tree(setup.network.agents, edges) {
         return None;
@@ -70,8 +84,9 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
     }
     let mut rows: Vec<Row> =
         (0..count).map(|_| Row { degree: 0.0, terms: 0, weight_s: 0.0, heard: Vec::new() }).collect();
-    // Controllers that sample hear up to a period later.
-    let period_s = setup.control.as_ref().map_or(0.0, |control| 1.0 / control.sample_hz);
+    let sample_s = setup.control.as_ref().map(|control| 1.0 / control.sample_hz);
+    // δ, and that controllers that sample hear up to a period later.
+    let (hold_s, period_s) = (sample_s.unwrap_or(following.period_s), sample_s.unwrap_or(0.0));
     let holds = match setup.exchange {
         Exchange::Estimates | Exchange::Composite => true,
         Exchange::Position | Exchange::PositionVelocity => false,
@@ -88,7 +103,13 @@ fn rows(setup: &Setup) -> Option<Vec<Row>> {
         row.terms += 1;
         // What is told is what was held a sample ago, where it is not measured.
         let told_s = if holds && index.get(edge.from)?.is_some() { period_s } else { 0.0 };
-        row.weight_s += weight * (known.bound_s + period_s + told_s);
+        let message_s = if late {
+            known.bound_s + period_s + 1.5 * hold_s
+        } else {
+            // A message that is late at all is heard a sample later.
+            hold_s + if known.bound_s > 0.0 { period_s } else { 0.0 }
+        };
+        row.weight_s += weight * (message_s + told_s);
         row.heard.extend(index.get(edge.from)?.map(|from| (from, weight)));
     }
     Some(rows)

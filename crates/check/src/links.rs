@@ -31,16 +31,19 @@ fn known_delays(setup: &Setup) -> LinkEvidence {
     if let Some(refuted) = delays(setup).find_map(|delay| delay.known().refuted) {
         return LinkEvidence::RefutedBound(refuted);
     }
-    let mut bound_s: f64 = 0.0;
+    let (mut bound_s, mut oldest_s): (f64, f64) = (0.0, 0.0);
     let mut unknown: Vec<Unknown> = Vec::new();
     let (mut basis, mut holds_packets) = (Basis::Rule, false);
     for known in delays(setup).map(|delay| delay.known()) {
         bound_s = bound_s.max(known.bound_s);
+        if known.holds_packets && known.unknown.is_some() {
+            oldest_s = oldest_s.max(known.bound_s);
+        }
         holds_packets |= known.holds_packets;
         basis = weaker(basis, known.basis);
         unknown.extend(known.unknown.filter(|reason| !unknown.contains(reason)));
     }
-    LinkEvidence::Delays { bound_s, unknown, end_s, basis, holds_packets }
+    LinkEvidence::Delays { bound_s, oldest_s, unknown, end_s, basis, holds_packets }
 }
 
 /// What two bounds together rest on.

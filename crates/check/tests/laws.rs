@@ -10,14 +10,15 @@ use forwardstep_check::{Answer, Finding, Id, PracticalAnswer, Source, Theorem, c
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::{Expression, Number, Unary};
 use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::plant::CascadeTerms;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
 use forwardstep_sim::reference::Consensus;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, Ending, Exchange, SampledJacobian, Setup, Signal, SpacecraftModel, ThrustKind, VelocitySensor,
-    sampled_jacobian, simulate,
+    AgentSetup, ChainModel, Ending, Exchange, SampledJacobian, Setup, Signal, SpacecraftModel, ThrustKind,
+    VelocitySensor, sampled_jacobian, simulate,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -229,6 +230,43 @@ fn eq_33_terms_have_a_value_in_every_state() {
     };
     let next = || Expression::variable(1);
     assert_eq!([cascaded(next()), cascaded(next() + one() / x())], [Answer::Holds, Answer::Violated]);
+}
+
+/// Of a strict-feedback chain of n equations n − 1 derivatives are taken, of a pure-feedback chain n.
+#[test]
+fn regress_terms_of_chains_bear_the_derivatives_that_backstepping_takes() {
+    let x = Expression::variable;
+    let number = Expression::number;
+    let said = |order: usize, term: Expression, pure: bool| {
+        let mut agent = cascade(x(1), number(1.0), 1);
+        let mut known: Vec<Expression> = (1..order).map(x).collect();
+        known.push(number(0.0));
+        if pure {
+            known[0] = x(1) + x(1).power(3.0) + term.clone();
+        }
+        let first = if pure { number(0.0) } else { term };
+        let regressors = (0..order).map(|i| vec![if i == 0 { first.clone() } else { number(0.0) }]).collect();
+        agent.robot.kind =
+            Arc::new(ChainModel::Cascade(Arc::new(CascadeTerms::new(known, regressors, number(1.0)).unwrap())));
+        let report = check(&alone(agent));
+        let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::DefinedTerms).unwrap();
+        (found.answer(), found.because(), found.change())
+    };
+    let power = |exponent: f64| x(0).power(2.0).power(exponent);
+    let answers = |order: usize, pure: bool, exponents: &[f64]| -> Vec<Answer> {
+        exponents.iter().map(|exponent| said(order, power(*exponent), pure).0).collect()
+    };
+    use Answer::{Holds, NotShown};
+    assert_eq!(answers(2, false, &[1.25, 2.5]), [Holds, Holds]);
+    assert_eq!(answers(3, false, &[1.5, 2.5]), [NotShown, Holds]);
+    assert_eq!(answers(4, false, &[1.25, 2.5, 3.5]), [NotShown, NotShown, Holds]);
+    assert_eq!(answers(2, true, &[1.25, 2.5]), [NotShown, Holds]);
+    // Of what is positive everywhere any power will do.
+    assert_eq!(said(4, (x(0).power(2.0) + 1.0).power(0.25), false).0, Holds);
+    assert_eq!(said(4, (x(0).power(2.0) + 1.0).sqrt_of(), false).0, Holds);
+    let (_, because, change) = said(4, power(1.25), false);
+    assert!(because.contains("is not shown to have 3 derivatives there"), "{because}");
+    assert!(change.unwrap().contains("exponents of 3 or more"));
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn only_a_bounded_loss_gives_a_bounded_delay() {
     assert_eq!(links(Delay::new(Trace::new(lost, 20.0).unwrap()), None).0, Answer::NotShown);
     let packets = vec![Packet { send_s: 0.0, delay_s: Some(0.5) }, Packet { send_s: 1.0, delay_s: None }];
     let (answer, because, _) = links(Delay::new(Trace::new(packets, 20.0).unwrap()), None);
-    assert_eq!(answer, Answer::HoldsOnHorizon);
+    assert_eq!(answer, Answer::NotShown);
     assert!(
         because.starts_with("no delay exceeds 20 s until the end of the run at 20 s") && because.contains("replayed"),
         "{because}"
@@ -196,4 +196,22 @@ fn a_weight_in_which_time_cancels_is_constant() {
         [Some(1.0), Some(2.0)]
     );
     assert_eq!(BoundedFormula::new(Expression::variable(0).sin_of() * 1e-9 + 1.0, 20.0).constant(), None);
+}
+
+/// A delay that is as long as the run is bounded by that alone: a log with one packet tells nothing.
+#[test]
+fn regress_a_log_after_whose_first_packet_everything_is_lost_shows_no_bound() {
+    let said = |received: &[u64]| {
+        let packet = |number: &u64| Packet { send_s: *number as f64, delay_s: Some(0.05) };
+        let trace = Trace::new(received.iter().map(packet).collect(), 20.0).unwrap();
+        let (answer, because, _) = links(Delay::new(trace), None);
+        (answer, because)
+    };
+    let every: Vec<u64> = (0..20).collect();
+    assert_eq!(said(&every).0, Answer::HoldsOnHorizon);
+    let (answer, because) = said(&[0]);
+    assert_eq!(answer, Answer::NotShown);
+    assert!(because.contains("nothing is seen to arrive again and again"), "{because}");
+    // Lost for the second half but a little.
+    assert_eq!([said(&every[..9]).0, said(&every[..12]).0], [Answer::NotShown, Answer::HoldsOnHorizon]);
 }

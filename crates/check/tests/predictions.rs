@@ -359,6 +359,22 @@ fn eq_noise_feeds_the_power_that_its_filter_lets_through() {
     assert!((filtered / found - 1.0).abs() < 0.02, "{filtered} {found}");
 }
 
+/// A torque in steps of q is off by q/2 at most, of every axis and for ever.
+#[test]
+fn eq_steps_of_the_torque_feed_the_power_as_pushes_of_half_a_step() {
+    let of = |quantum: f64| {
+        let mut setup = two_arms().sampled(500.0);
+        setup.control.as_mut().unwrap().actuators.torque_quantum = quantum;
+        bound(&setup).unwrap()
+    };
+    let (none, steps) = (of(0.0), of(3.0));
+    // ¼ q² Σ 1/K_jj: K is 8 on both axes of both arms.
+    assert_eq!(none.steps_w, 0.0);
+    assert!((steps.steps_w - 2.25 * 4.0 / 8.0).abs() < 1e-12 && steps.mean_w > none.mean_w, "{steps:?}");
+    let drive = 0.5 * steps.steps_w.sqrt() / (1.0 - steps.sigma);
+    assert!(steps.mean_w > drive * drive, "{steps:?}");
+}
+
 #[test]
 fn what_is_watched_is_the_worst_of_what_was_recorded() {
     let mut setup = two_arms().sampled(200.0);

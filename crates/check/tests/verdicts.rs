@@ -26,7 +26,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Logged, Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
-    Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, ThrustLaw, VelocitySensor,
+    Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, ThrustLaw,
 };
 
 /// Two masses that hear each other through delays of their own.

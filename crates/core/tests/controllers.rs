@@ -4,8 +4,9 @@ use crate::common::looped::polynomial as moved;
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, Controller, Floor, Following as ChainFollowing,
-    Given, Guide, Immersion, Jet, Jets, Linearising, PositionOnly, Stepped, TaskSpace, Thrust, ThrustDesign, Trouble,
+    AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, ChainError, Controller, Floor,
+    Following as ChainFollowing, Given, Guide, Immersion, Jet, Jets, Linearising, PositionOnly, Stepped, TaskSpace,
+    Thrust, ThrustDesign, Trouble,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::{ParameterBounds, SlotineLi};
@@ -171,6 +172,16 @@ fn immersion_notices_an_antiderivative_that_is_a_little_off() {
     };
     assert!(made(1.0 / 3.0).is_ok());
     assert!(made(1.0 / 3.0 + 1e-6).is_err());
+    // A slip that is nothing at all points that are tried: within 0.2 of v = 3, and beyond v = 4.
+    for slip in [((v.clone() - 3.0).power(2.0) * -100.0).exp_of() * 0.5, ((v.clone() - 10.0) * 20.0).exp_of() * 1e-40] {
+        let following = ChainFollowing { guide: guide(), gain_per_s: 1.0, floor: 0.1 };
+        let antiderivative = x.clone() * v.clone().power(3.0) / 3.0 + slip;
+        let error = Immersion::new(plant(), &[antiderivative], following, vec![1.0], vec![0.0]).unwrap_err();
+        assert!(
+            matches!(error, ChainError::AntiderivativeNotShown { .. } | ChainError::Antiderivative { .. }),
+            "{error}"
+        );
+    }
     // The estimate at the start is θ̂ + β, whatever β is there.
     let law = made(1.0 / 3.0).unwrap();
     let mut state = vec![0.0; total(&law.states())];

@@ -81,7 +81,7 @@ fn windows_of_phases_are_those_found_the_long_way_round() {
                     let others = found.iter().take(found.len() - 1).filter(|(_, run)| *run == Some(longest));
                     worst_is_last += usize::from(others.count() == 0 && found.len() > 1);
                 }
-                Window::EveryGraph => panic!("nothing is drawn"),
+                Window::EveryGraph | Window::Once { .. } => panic!("nothing is drawn, and all is known for ever"),
                 Window::Missing { .. } => {
                     assert!(found.iter().any(|(_, run)| run.is_none()), "{schedule:?}");
                     missing += 1;

@@ -114,7 +114,14 @@ fn defined(setup: &Setup, agents: &[usize]) -> Hypothesis {
     let mut evidence = KindEvidence::TermsDefined;
     for (index, term, expression) in distinct_terms(setup, agents) {
         match expression.domain() {
-            Domain::Everywhere => {}
+            Domain::Everywhere if expression.bears_derivatives(taken(setup, index)) => {}
+            Domain::Everywhere => {
+                evidence = KindEvidence::TermNotSmooth {
+                    agent: Named::of(setup, index),
+                    term,
+                    derivatives: taken(setup, index),
+                };
+            }
             Domain::NotShown => evidence = KindEvidence::TermNotShown { agent: Named::of(setup, index), term },
             Domain::Fails { at, gap } => {
                 let evidence = KindEvidence::TermFails { agent: Named::of(setup, index), term, at, gap };
@@ -123,6 +130,15 @@ fn defined(setup: &Setup, agents: &[usize]) -> Hypothesis {
         }
     }
     Hypothesis::new(Id::DefinedTerms, evidence)
+}
+
+/// How many derivatives backstepping takes of the terms of an agent, at most: of a strict-feedback chain one fewer than there are equations, of
+/// a pure-feedback chain, whose factors are derivatives themselves, as many. None elsewhere.
+fn taken(setup: &Setup, index: usize) -> usize {
+    match setup.agents[index].robot.kind.downcast() {
+        Some(ChainModel::Cascade(terms)) => terms.order() - usize::from(terms.is_strict()),
+        Some(ChainModel::Derivatives(_) | ChainModel::Vector(_)) | None => 0,
+    }
 }
 
 /// A chain of which a term has no value in a state, and the state.

@@ -140,6 +140,7 @@ impl Finding {
                 ("start_w", bound.start_w),
                 ("push_w", bound.push_w),
                 ("noise_w", bound.noise_w),
+                ("steps_w", bound.steps_w),
                 ("friction_w", bound.friction_w),
                 ("span_s", bound.span_s),
             ],
@@ -172,9 +173,10 @@ impl Practical {
 pub fn practical(setup: &Setup) -> Practical {
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
-    let margin = SamplingMargin::of(setup).map(Finding::SamplingMargin);
+    let margin = SamplingMargin::of(setup);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
-    let power = PowerBound::of(setup);
+    let power = PowerBound::of(setup, margin.as_ref());
+    let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);
     let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);

@@ -52,6 +52,8 @@ pub struct PowerBound {
     pub push_w: f64,
     /// D² of measurement errors, W: expected, not certain.
     pub noise_w: f64,
+    /// D² of torques that come in steps, W.
+    pub steps_w: f64,
     /// E, which dry friction feeds at most, W.
     pub friction_w: f64,
     /// σ; zero in continuous time.
@@ -71,13 +73,14 @@ pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f6
 }
 
 impl PowerBound {
-    /// Over the whole run of a setup; `None` where there is nothing that feeds V but its start, or where V(0), a push or σ is not known
+    /// Over the whole run of a setup with its sampling margin; `None` where there is nothing that feeds V but its start, or where V(0), a push or σ is not known
     /// before the run.
-    pub fn of(setup: &Setup) -> Option<PowerBound> {
+    pub fn of(setup: &Setup, margin: Option<&SamplingMargin>) -> Option<PowerBound> {
         if !is_fed(setup) {
             return None;
         }
         let (mut start_j, mut push_w, mut noise_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0.0, 0);
+        let mut steps_w = 0.0;
         let span_s = setup.time.end_s;
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
@@ -85,11 +88,13 @@ impl PowerBound {
             push_w += pushed_w(agent, &gains, [0.0, span_s])?;
             friction_w += dry_loss_w(agent).unwrap_or(0.0);
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
+            steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
             agents += 1;
         }
-        let sigma = if setup.control.is_some() { SamplingMargin::of(setup)?.worst.sigma } else { 0.0 };
+        let sigma = if setup.control.is_some() { margin?.worst.sigma } else { 0.0 };
         let start_w = start_j / span_s;
-        let parts = PowerBound { agents, span_s, start_w, push_w, noise_w, friction_w, sigma, mean_w: f64::NAN };
+        let parts =
+            PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, friction_w, sigma, mean_w: f64::NAN };
         (agents > 0).then(|| parts.worked_out()).flatten()
     }
 
@@ -98,10 +103,10 @@ impl PowerBound {
         self.noise_w > 0.0 || self.sigma > 0.0
     }
 
-    /// The same with [`PowerBound::mean_w`]: the D of pushes and of noise add up, at worst. `None` where it is not finite, and where it
+    /// The same with [`PowerBound::mean_w`]: the D of pushes, of noise and of steps add up, at worst. `None` where it is not finite, and where it
     /// is zero: then what is left out is all there is.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
-        let drive = self.push_w.sqrt() + self.noise_w.sqrt();
+        let drive = self.push_w.sqrt() + self.noise_w.sqrt() + self.steps_w.sqrt();
         let mean_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
         (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
     }
@@ -127,6 +132,13 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
         }
     };
     mean_square * gains.damping.trace()
+}
+
+/// D² of a torque that is off by half a step of its actuator at most on every axis, as it can be for ever where nothing moves, W; `None` where K
+/// cannot be inverted.
+pub(super) fn steps_w_of(control: &Control, gains: &Gains) -> Option<f64> {
+    let half = 0.5 * control.actuators.torque_quantum;
+    Some(half * half * gains.damping.clone().cholesky()?.inverse().abs().sum())
 }
 
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.

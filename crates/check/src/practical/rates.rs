@@ -20,7 +20,7 @@
 //! ```
 //!
 //! which is the same where neither is. That is no bound on V: it says that no mode grows while Y stays, to first order in ℓ. Of one axis and every late or
-//! filtered command no mode grows below σ = 0.98, as a test shows by the recursion of `held`.
+//! filtered command no mode grows below σ = 0.975, as a test shows by the recursion of `held`.
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::TwoVelocity;
@@ -277,8 +277,8 @@ mod tests {
             let p = (1.0 - share) * k / (h * (0.5 + hold.lag(h)));
             let one = |x: f64| DMatrix::from_element(1, 1, x);
             let at = |sigma: f64| rates_of(one(m), one(sigma * k), one(sigma * sigma * p));
-            prop_assert!((at(1.0).sigma(hold, h) - 1.0).abs() < 1e-9 && (at(0.98).sigma(hold, h) - 0.98).abs() < 1e-9);
-            let below = at(0.98);
+            prop_assert!((at(1.0).sigma(hold, h) - 1.0).abs() < 1e-9 && (at(0.975).sigma(hold, h) - 0.975).abs() < 1e-9);
+            let below = at(0.975);
             prop_assert!(radius(&below, hold, h) < 1.0 + ROUNDING && !below.grows(hold, h), "{}", radius(&below, hold, h));
         }
     }

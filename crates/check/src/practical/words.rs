@@ -79,7 +79,7 @@ fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &Stati
 }
 
 fn power(bound: &PowerBound) -> String {
-    let PowerBound { agents, span_s, start_w, push_w, noise_w, friction_w, sigma, mean_w } = *bound;
+    let PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, friction_w, sigma, mean_w } = *bound;
     let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
     // Sampled, what the plant does between samples is left out.
     let kind = if bound.is_expected() { "is expected to be at most" } else { "is at most" };
@@ -89,11 +89,12 @@ fn power(bound: &PowerBound) -> String {
     };
     let sampled = if sigma > 0.0 { format!(", with σ = {}", rounded(sigma)) } else { String::new() };
     format!(
-        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{sampled}",
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{sampled}",
         rounded_up(mean_w),
         rounded_up(start_w),
         part("pushes", push_w),
         part("measurement errors", noise_w),
+        part("steps of the torque", steps_w),
         part("dry friction", friction_w),
     )
 }

@@ -9,7 +9,7 @@ use crate::graphs::{dwell_time, fixed_graph, leader_in_every_graph, leader_reach
 use crate::hypothesis::numbers::rounded_up;
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, ReferenceEvidence, Subject};
 use crate::kinds::starts_from_zero;
-use crate::late_leader::behind;
+use crate::late_leader::{behind, held};
 use crate::links::{bounded_delays, bounded_weights, constant_weights, is_late, no_delay};
 use crate::report::Report;
 use crate::theorem::Theorem;
@@ -199,7 +199,12 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
         | FollowingDesign::Composite
         | FollowingDesign::Swarm { .. } => (following.alpha * swing).sqrt(),
     };
-    let left = period_s * following.drive_bound(None) / following.alpha * swing;
+    // Signs that are set at once with their neighbours' leave no more of many than of one.
+    let left = if sampled || is_late(setup) {
+        held(setup, following).unwrap_or(f64::INFINITY) * swing
+    } else {
+        period_s * following.drive_bound(None) / following.alpha * swing
+    };
     let end_s = setup.time.end_s;
     let evidence =
         FollowingEvidence::Sign { choice: following.choice, sampled, period_s, rate_per_s: alpha_per_s, left, end_s };

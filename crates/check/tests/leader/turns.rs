@@ -10,10 +10,13 @@ use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Path;
-use forwardstep_sim::{Method, Setup, Signal, simulate};
+use forwardstep_sim::{Method, Setup, Signal, TimeSpan, simulate};
 
 use super::{answer, led_by_agent, mass, setup, wave};
 use crate::common::{column, edge};
+
+/// That of the setups here, s.
+const SIGN_PERIOD_S: f64 = 1e-3;
 
 /// The report on (110) over two edges with these delays.
 fn late(delays: [Delay; 2], weight: f64) -> Report {
@@ -34,18 +37,70 @@ fn prop_with_delays_on_a_fixed_graph_what_may_be_left_is_said() {
     };
     let drive = 5.0_f64.sqrt();
     for (delays, weight) in [([0.1, 0.0], 1.0), ([0.1, 0.05], 7.0), ([0.0, 1e-9], 1.0), ([3.0, 2.0], 0.1)] {
-        let (found, exact) = (near(&late(delays.map(Delay::constant), weight)), drive * (delays[0] + delays[1]));
+        // Of each of both links a period and a half of the sign besides.
+        let whole_s = delays[0] + delays[1] + 2.0 * 1.5 * SIGN_PERIOD_S;
+        let (found, exact) = (near(&late(delays.map(Delay::constant), weight)), drive * whole_s);
         assert!(found >= exact && found <= 1.001 * exact, "{delays:?}: {found} {exact}");
     }
     // A cycle: c₁ = (c₂ + D (T₁ + T₂))/2 and c₂ = c₁ + D T₂.
     let mut ring = setup(FollowingDesign::Continuous, wave(), 3.0);
     ring.network.delays = [0.1, 0.2].map(Delay::constant).to_vec();
     ring.network.schedule = Schedule::fixed(vec![edge(2, 0, 1.0, 0), edge(0, 1, 2.0, 1), edge(1, 0, 1.0, 1)]);
-    let (found, exact) = (near(&check(&ring)), drive * (0.1 + 0.2 + 0.2 + 0.2));
+    let (found, exact) = (near(&check(&ring)), drive * (0.1 + 0.2 + 0.2 + 0.2 + 6.0 * SIGN_PERIOD_S));
     assert!(found >= exact && found <= 1.001 * exact, "{found} {exact}");
-    // Controllers that sample hear a period later: two more periods along the row.
+    // Controllers that sample hear a period later, and hold their signs for a period: two and a half of them for each link.
     let sampled = check(&ring.clone().sampled(100.0));
-    assert!(sampled.promises.contains("exceeds 1.655"), "{}", sampled.promises);
+    assert!(sampled.promises.contains("exceeds 1.789"), "{}", sampled.promises);
+}
+
+/// A path of masses behind a leader that moves steadily, from rest at its place, and how far the last one is from it in the end.
+fn path(agents: usize, delay_s: f64, sample_hz: Option<f64>) -> (Setup, f64) {
+    let steady = Path::Formula(Expression::variable(0) * 0.7);
+    let mut setup = setup(FollowingDesign::Continuous, steady, 3.0);
+    setup.agents = (0..agents).map(|_| setup.agents[0].clone()).collect();
+    for (index, agent) in setup.agents.iter_mut().enumerate() {
+        agent.name = format!("mass-{}", index + 1);
+    }
+    setup.network.agents = agents + 1;
+    setup.network.delays = vec![Delay::constant(delay_s)];
+    let links = (1..agents).flat_map(|i| [edge(i - 1, i, 1.0, 0), edge(i, i - 1, 1.0, 0)]);
+    setup.network.schedule = Schedule::fixed(links.chain([edge(agents, 0, 1.0, 0)]).collect());
+    let setup = match sample_hz {
+        Some(hz) => setup.sampled(hz),
+        None => setup,
+    };
+    let end_s = 60.0;
+    let setup = Setup { time: TimeSpan { end_s, record_every_s: 0.05, ..setup.time.clone() }, ..setup };
+    let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    let last = *column(&outcome, agents - 1, Signal::Position, 0).last().unwrap();
+    (setup, (0.7 * end_s - last).abs())
+}
+
+/// What follows a word in a sentence, as a number.
+fn after(sentence: &str, word: &str) -> f64 {
+    let number = sentence.split(word).nth(1).unwrap_or_else(|| panic!("{word}: {sentence}"));
+    number.split([';', ',', ' ']).next().unwrap().parse().unwrap()
+}
+
+/// A delay of a microsecond lets every agent of a path lag by a held sign more than the one before.
+#[test]
+fn regress_held_signs_add_up_along_a_path_of_late_links() {
+    for (delay_s, sample_hz) in [(1e-6, None), (0.05, None), (1e-6, Some(200.0)), (0.05, Some(200.0))] {
+        let (setup, left) = path(6, delay_s, sample_hz);
+        let report = check(&setup);
+        let bound = after(&report.promises, "exceeds ");
+        assert!(left <= bound && bound <= 2.6 * left, "{delay_s} {sample_hz:?}: {left} of {bound}");
+        let about = after(&answer(&report, "set-valued").1, "an error of about ");
+        assert!(about <= bound && about > 0.3 * left - 0.7 * 36.0 * delay_s, "{delay_s} {sample_hz:?}: {about} {left}");
+    }
+    // Each link adds the period of its own end: 1, 3, 5 … 11 of them up to the last. Without a delay signs are set together, but not by controllers that sample.
+    for (sample_hz, times) in [(None, 1.0), (Some(200.0), 36.0)] {
+        let (setup, left) = path(6, 0.0, sample_hz);
+        let about = after(&answer(&check(&setup), "set-valued").1, "an error of about ");
+        let one = 0.7 * sample_hz.map_or(SIGN_PERIOD_S, |hz: f64| 1.0 / hz);
+        assert!((about / (times * one) - 1.0).abs() < 1e-3, "{about} {times} {one}");
+        assert!(left <= 1.2 * about && left > 0.5 * about, "{sample_hz:?}: {left} {about}");
+    }
 }
 
 #[test]

@@ -46,6 +46,15 @@ pub enum ChainError {
         /// What it should be.
         regressor: f64,
     },
+    /// An antiderivative that is none at points that were not looked at, or is written too differently.
+    #[error(
+        "the antiderivative of regressor {} could not be shown to have the regressor as its slope in the highest derivative",
+        .parameter + 1
+    )]
+    AntiderivativeNotShown {
+        /// Which one, from zero.
+        parameter: usize,
+    },
     /// A start at which an estimate would stay.
     #[error(
         "the estimate of parameter {} starts at {start}, and this law keeps it strictly between its bounds, {lower} and {upper}, where \

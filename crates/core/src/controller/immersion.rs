@@ -113,7 +113,8 @@ impl Immersion {
     /// at the start.
     ///
     /// # Errors
-    /// [`ChainError`] when the reference does not suit the plant, lengths differ, a gain is not positive, or ∂Φ/∂v is not φ.
+    /// [`ChainError`] when the reference does not suit the plant, lengths differ, a gain is not positive, or ∂Φ/∂v is not φ, or not shown to be by
+    /// the algebra of polynomials in the functions that stand in them.
     pub fn new(
         terms: Formulas,
         antiderivatives: &[Expression],
@@ -143,6 +144,12 @@ impl Immersion {
             slopes.push(graph.derivative(value, top)?);
         }
         compare(&terms, &Tape::new(&graph, &slopes)?)?;
+        for (parameter, (regressor, slope)) in terms.regressor().iter().zip(&slopes).enumerate() {
+            let regressor = graph.import(regressor)?;
+            if !graph.agree(*slope, regressor) {
+                return Err(ChainError::AntiderivativeNotShown { parameter });
+            }
+        }
         values.extend(turned);
         let tape = Tape::new(&graph, &values)?;
         Ok(Immersion { terms, following, adaptation, estimate_start, bounds: None, tape })
@@ -175,7 +182,7 @@ impl Immersion {
 }
 
 /// Compares ∂Φ/∂v with φ at points spread over [−2, 2]^k, and by intervals, which a slip that is small there does not escape,
-/// at these and at points a thousand and a million times as far.
+/// at these and at points a thousand and a million times as far: so that a mistake is told with its numbers.
 fn compare(terms: &Formulas, slopes: &Tape) -> Result<(), ChainError> {
     let (k, p) = (terms.order(), terms.parameters());
     let (mut work, mut workspace) = (terms.scratch(), slopes.workspace());

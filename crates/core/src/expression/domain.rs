@@ -198,6 +198,22 @@ impl Expression {
         found.map_or(Domain::NotShown, |(at, gap)| Domain::Fails { at, gap })
     }
 
+    /// Whether so many derivatives are bounded on every bounded set, as far as powers go that are no whole numbers: each has a base that is
+    /// positive everywhere, or an exponent as large. With a smaller one a derivative is a product of what is infinite and what is zero.
+    pub fn bears_derivatives(&self, count: usize) -> bool {
+        self.operations().into_iter().all(|operation| {
+            let (base, exponent) = match operation {
+                Operation::Power(base, exponent) if libm::trunc(exponent.value()) != exponent.value() => {
+                    (base, exponent.within().low)
+                }
+                Operation::Unary(Unary::Sqrt, base) => (base, 0.5),
+                Operation::Unary(..) | Operation::Binary(..) | Operation::Power(..) => return true,
+            };
+            let (within, nonzero) = Expression { steps: base.to_vec() }.everywhere();
+            exponent >= count as f64 || within.low >= 0.0 && nonzero
+        })
+    }
+
     /// An interval that holds its value everywhere, and whether it is shown to be zero nowhere.
     pub fn everywhere(&self) -> (Interval, bool) {
         let part = self.fold(&mut Parts(&vec![Interval::WHOLE; self.variables()]));

@@ -31,6 +31,7 @@ mod kinks;
 mod number;
 mod operation;
 mod period;
+mod same;
 mod series;
 mod tail;
 mod tape;

@@ -303,12 +303,13 @@ fn meaning(
     let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
     let (reference, exchange) = (dynamics, leading.read.exchange);
     let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
+    // What a notice simulates has a meaning then.
+    recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
     notices.extend(Notice::starts_beyond_limits(&setup));
     notices.extend(Notice::rotation(&setup));
     notices.extend(Notice::stiff(&setup));
-    recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
     let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup)).transpose()?;
     Ok(Scenario {
         name: name.to_owned(),

@@ -101,6 +101,9 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::Chain { error: ChainError::Antiderivative { .. }, .. } => {
             "leave `antiderivatives` out for regressors without the highest derivative".to_owned()
         }
+        SetupError::Chain { error: ChainError::AntiderivativeNotShown { .. }, .. } => {
+            "write it with the functions that stand in the regressor, of the same arguments: (sin(x))^2 is not known to be 1 - (cos(x))^2".to_owned()
+        }
         SetupError::Memory { need_bytes, .. } => {
             format!("write `memory_budget_bytes = {need_bytes}` or more in `[solver]`, sample more slowly, or shorten the longest delay")
         }

@@ -167,6 +167,7 @@ pub fn verdicts() -> Report {
     let tree = GraphEvidence::Window { length_s: 3.0, worst_start_s: 1.0, roots, for_all_time: true, drawn: false };
     let delays = LinkEvidence::Delays {
         bound_s: 0.4,
+        oldest_s: 0.0,
         unknown: Vec::new(),
         end_s: 60.0,
         basis: Basis::Rule,

@@ -60,9 +60,10 @@ impl SetupError {
             | SetupError::Spacecraft { agent, .. }
             | SetupError::NoEffortLimit { agent, .. }
             | SetupError::Chain { agent, error: ChainError::Expression(_) } => of(agent).key("robot"),
-            SetupError::Chain { agent, error: ChainError::Antiderivative { parameter, .. } } => {
-                of(agent).key("law.immersion.antiderivatives").index(*parameter)
-            }
+            SetupError::Chain {
+                agent,
+                error: ChainError::Antiderivative { parameter, .. } | ChainError::AntiderivativeNotShown { parameter },
+            } => of(agent).key("law.immersion.antiderivatives").index(*parameter),
             SetupError::Chain { agent, error: ChainError::StartAtBound { .. } } => {
                 of(agent).key("law.adaptive_backstepping.estimate_start")
             }

@@ -114,6 +114,28 @@ fn what_is_drawn_is_judged_by_what_can_be_drawn() {
     assert!(matches!(window(&[&[(0, 1)], &[(1, 2)]], 50.0), Window::Uniform { for_all_time: false, .. }));
 }
 
+/// What the end of a log cuts off is a window that is not complete, and the run has to be twice as long as what it needs.
+#[test]
+fn regress_a_tail_without_a_tree_is_held_against_a_log() {
+    let link: &[(usize, usize)] = &[(0, 1)];
+    let window = |starts: &[(f64, usize)], end_s: f64| {
+        let graphs = vec![phase(0.0, link).edges, phase(0.0, &[]).edges];
+        let (starts_s, which) = starts.iter().copied().unzip();
+        Schedule::logged(graphs, Logged { starts_s, graphs: which, until_s: end_s }).window(2, end_s)
+    };
+    let once = |wait_s, start_s| Window::Once { wait_s, start_s };
+    assert_eq!(window(&[(0.0, 0), (0.05, 1)], 60.0), once(59.95, 0.05));
+    assert_eq!(window(&[(0.0, 1), (30.5, 0)], 60.0), once(30.5, 0.0));
+    // One graph with a tree may stay as long as it likes.
+    assert!(matches!(window(&[(0.0, 0)], 60.0), Window::Uniform { for_all_time: false, .. }));
+    // Heard every ten seconds, up to the end and until long before.
+    let starts = |k: u32| [(10.0 * f64::from(k), 0), (10.0 * f64::from(k) + 1.0, 1)];
+    let every: Vec<(f64, usize)> = (0..6).flat_map(starts).collect();
+    assert!(matches!(window(&every, 60.0), Window::Uniform { length_s: 10.0, for_all_time: false, .. }));
+    assert!(matches!(window(&every, 75.0), Window::Uniform { length_s: 24.0, worst_start_s: 51.0, .. }));
+    assert_eq!(window(&every, 120.0), once(69.0, 51.0));
+}
+
 #[test]
 fn only_the_last_graph_of_a_schedule_that_ends_recurs() {
     let phases = vec![phase(1.0, &[(0, 1)]), phase(1.0, &[(1, 2)])];

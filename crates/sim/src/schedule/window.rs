@@ -24,6 +24,14 @@ pub enum Window {
     },
     /// Every graph that can be drawn has a directed spanning tree by itself: any window will do, whatever the draws.
     EveryGraph,
+    /// There are runs of phases with a directed spanning tree, but the horizon is not twice as long as one waits for the phase that completes
+    /// one, or waits in vain up to its end: nothing is seen to come back.
+    Once {
+        /// How long one waits, s.
+        wait_s: f64,
+        /// The switching instant from which on, s.
+        start_s: f64,
+    },
     /// From `start_s` on no union has a directed spanning tree.
     Missing {
         /// In s.
@@ -43,8 +51,7 @@ impl Schedule {
     /// A graph that has a tree by itself can be cut into windows as short as one likes, so where each that can be drawn has one,
     /// nothing is left to the draws.
     ///
-    /// A run of phases that the horizon cuts off is not held against a random schedule: it is only asked of switching
-    /// instants from which a union was complete before the end, and at least of t = 0.
+    /// A run of phases that the horizon cuts off is not complete, and it tells how long a window is at least.
     pub fn window(&self, agents: usize, end_s: f64) -> Window {
         let extent = self.known().extent;
         if extent != Extent::Horizon
@@ -85,6 +92,8 @@ impl Schedule {
         };
         let last_for_ever = segments.last().is_some_and(|s| s.end_s.is_infinite());
         let (mut length_s, mut worst_start_s, mut worst_roots) = (-1.0, 0.0, Vec::new());
+        // How long one waits for the phase that completes a union, and from when on.
+        let (mut wait_s, mut waits_from_s) = (0.0, 0.0);
         // The run from a later phase never ends earlier, so both ends of it only move forwards.
         let (mut union, mut next) = (Union::new(self, agents), 0);
         for first in 0..starts {
@@ -95,12 +104,18 @@ impl Schedule {
             let start_s = segments[first].start_s;
             if !union.is_rooted() {
                 if !for_all_time && first > 0 {
+                    if end_s - start_s > wait_s {
+                        (wait_s, waits_from_s) = (end_s - start_s, start_s);
+                    }
                     break;
                 }
                 let SpanningTree::Missing { closed_groups } = union.spanning_tree() else { break };
                 return Window::Missing { start_s, for_ever: for_all_time, closed_groups };
             }
             let last = segments[next - 1];
+            if last.start_s - start_s > wait_s {
+                (wait_s, waits_from_s) = (last.start_s - start_s, start_s);
+            }
             // A last graph that stays for ever can be cut into windows as short as one likes.
             let end = if last.end_s.is_infinite() { last.start_s } else { last.end_s };
             if end - start_s > length_s
@@ -116,6 +131,13 @@ impl Schedule {
             && let SpanningTree::Missing { closed_groups } = spanning_tree(agents, self.graph(last.graph))
         {
             return Window::Missing { start_s: last.start_s, for_ever: true, closed_groups };
+        }
+        if !for_all_time && 2.0 * wait_s > end_s {
+            return Window::Once { wait_s, start_s: waits_from_s };
+        }
+        // No window is shorter than what the horizon cuts off.
+        if wait_s > length_s {
+            (length_s, worst_start_s) = (wait_s, waits_from_s);
         }
         Window::Uniform { length_s, worst_start_s, roots: worst_roots, for_all_time }
     }

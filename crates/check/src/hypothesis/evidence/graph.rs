@@ -29,6 +29,15 @@ pub enum GraphEvidence {
         /// How many there are.
         graphs: usize,
     },
+    /// Unions have one, but the run, beyond which nothing is known, is not twice as long as one waits for it.
+    Once {
+        /// How long one waits, s, or until the end.
+        wait_s: f64,
+        /// From then on, s.
+        start_s: f64,
+        /// The end of the run, s.
+        end_s: f64,
+    },
     /// From some time on no union has a directed spanning tree.
     Cut {
         /// From then on, s.
@@ -133,9 +142,9 @@ impl GraphEvidence {
             | GraphEvidence::Reached { for_all_time, .. }
             | GraphEvidence::InEveryGraph { for_all_time, .. } => holds(*for_all_time),
             GraphEvidence::Unheard { for_all_time: false, .. } => Answer::NotShown,
-            GraphEvidence::Cut { until_s: Some(_), .. } | GraphEvidence::Unreached { until_s: Some(_), .. } => {
-                Answer::NotShown
-            }
+            GraphEvidence::Cut { until_s: Some(_), .. }
+            | GraphEvidence::Unreached { until_s: Some(_), .. }
+            | GraphEvidence::Once { .. } => Answer::NotShown,
             GraphEvidence::Cut { until_s: None, .. }
             | GraphEvidence::Unreached { until_s: None, .. }
             | GraphEvidence::Unheard { for_all_time: true, .. }
@@ -169,6 +178,7 @@ impl GraphEvidence {
             }
             GraphEvidence::Cut { until_s: Some(_), .. }
             | GraphEvidence::Unreached { until_s: Some(_), .. }
+            | GraphEvidence::Once { .. }
             | GraphEvidence::LoggedPhases { .. }
             | GraphEvidence::RefutedSwitching { .. } => Rigour::Given,
             GraphEvidence::DeclaredPhases { .. } => Rigour::Declared,

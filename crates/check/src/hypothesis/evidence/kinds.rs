@@ -105,6 +105,15 @@ pub enum KindEvidence {
         /// Which.
         term: Term,
     },
+    /// A term of a chain that has a value everywhere, of which more derivatives are taken than its powers are shown to bear.
+    TermNotSmooth {
+        /// Whose.
+        agent: Named,
+        /// What it is.
+        term: Term,
+        /// How many are taken.
+        derivatives: usize,
+    },
     /// The factor of the input is a constant below its floor.
     FactorBelowFloor {
         /// Whose.
@@ -288,6 +297,7 @@ impl KindEvidence {
             KindEvidence::Declared { .. }
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::TermNotShown { .. }
+            | KindEvidence::TermNotSmooth { .. }
             | KindEvidence::TurningTarget
             | KindEvidence::Probed { probe: Probe { found: None, .. }, .. } => Answer::NotShown,
             KindEvidence::Mixture(_)
@@ -359,7 +369,8 @@ impl KindEvidence {
             | KindEvidence::AttitudeApart { .. }
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::HalfTurn
-            | KindEvidence::TermNotShown { .. } => Rigour::Enclosed,
+            | KindEvidence::TermNotShown { .. }
+            | KindEvidence::TermNotSmooth { .. } => Rigour::Enclosed,
             KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }

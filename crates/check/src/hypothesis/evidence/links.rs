@@ -12,6 +12,8 @@ pub enum LinkEvidence {
     Delays {
         /// None is longer, s.
         bound_s: f64,
+        /// No message becomes older on the run, of links whose packets are known no longer than that, s; zero where there are none.
+        oldest_s: f64,
         /// Why that, or their uniform continuity, is not known for ever; empty when it is.
         unknown: Vec<Unknown>,
         /// The end of the run, s.
@@ -108,6 +110,8 @@ impl LinkEvidence {
             }
             LinkEvidence::Delays { unknown, .. } if unknown.is_empty() => Answer::Holds,
             LinkEvidence::Delays { unknown, .. } if unknown.iter().any(|one| beyond_the_run(*one)) => Answer::NotShown,
+            // An age as large as the run is bounded by that alone.
+            LinkEvidence::Delays { oldest_s, end_s, .. } if 2.0 * oldest_s > *end_s => Answer::NotShown,
             LinkEvidence::Delays { .. } => Answer::HoldsOnHorizon,
             LinkEvidence::Weights { until_s: None, .. } => Answer::Holds,
             LinkEvidence::Weights { until_s: Some(_), .. } => Answer::NotShown,

@@ -31,6 +31,12 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
                 (false, false) => format!("up to the end of the run {window}"),
             }
         }
+        GraphEvidence::Once { wait_s, start_s, end_s } => format!(
+            "from t = {} s on nobody reaches all for {} s, more than half of the run, which ends at {} s: nothing is seen to come back",
+            seconds(*start_s),
+            seconds(*wait_s),
+            seconds(*end_s)
+        ),
         GraphEvidence::EveryGraph { graphs } => {
             format!(
                 "each of the {graphs} graphs that can be drawn has a tree by itself, whatever is drawn for how long"

@@ -92,6 +92,13 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::TermNotShown { agent, term } => {
             format!("that {} of {} has could be neither shown nor refuted", name(*term), agent.name)
         }
+        KindEvidence::TermNotSmooth { agent, term, derivatives } => format!(
+            "{} of {} has a value everywhere, but is not shown to have {derivatives} {} there: a power of what comes to zero has no more \
+             than its exponent says",
+            name(*term),
+            agent.name,
+            if *derivatives == 1 { "derivative" } else { "derivatives" }
+        ),
         KindEvidence::BoundedStates { agent } => {
             format!("a run that is completed keeps the states of {} bounded, and with them its regressors", agent.name)
         }

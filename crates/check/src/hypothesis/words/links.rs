@@ -14,14 +14,16 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
         LinkEvidence::RefutedDelay { words, fault } => {
             format!("{words} is not what its author declares: {fault}")
         }
-        LinkEvidence::Delays { bound_s, unknown, end_s, holds_packets, basis } => {
+        LinkEvidence::Delays { bound_s, oldest_s, unknown, end_s, holds_packets, basis } => {
             let bound = bound(*bound_s);
             let pieces = if *holds_packets { "; between the arrivals of packets it grows like t" } else { "" };
             if unknown.is_empty() {
                 let basis = if *basis == Basis::Declared { " (declared, not shown)" } else { "" };
                 return format!("no delay exceeds {bound} s{pieces}{basis}");
             }
-            let reasons: Vec<&str> = unknown.iter().copied().map(reason).collect();
+            let short = (2.0 * bound_s > *end_s)
+                .then_some("the run is not twice as long, so that nothing is seen to arrive again and again");
+            let reasons: Vec<&str> = unknown.iter().copied().map(reason).chain(short).collect();
             format!(
                 "no delay exceeds {bound} s until the end of the run at {} s{pieces}; {}",
                 seconds(*end_s),

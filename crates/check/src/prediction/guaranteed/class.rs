@@ -59,7 +59,7 @@ impl ClassBound {
         };
         // How long a hop may wait for its edge, how long that is there, and whether the root is always the same.
         let (waits_s, lasts_s, same_root) = match window {
-            Window::Missing { .. } => return None,
+            Window::Missing { .. } | Window::Once { .. } => return None,
             // Of a time as long as a graph is in force at least, one is in force for half.
             Window::EveryGraph => (dwell_s.min(2.0 * step_s), 0.5 * dwell_s.min(2.0 * step_s), false),
             // It stays for ever.

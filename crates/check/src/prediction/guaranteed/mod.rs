@@ -129,7 +129,7 @@ pub fn guaranteed_rate(setup: &Setup, work: f64) -> Result<GuaranteedRate, NoGua
     let window = setup.network.schedule.window(setup.network.agents, setup.time.end_s);
     let window_s = match window {
         Window::Missing { .. } => return Err(NoGuaranteedRate::NoSpanningTree),
-        Window::EveryGraph => None,
+        Window::EveryGraph | Window::Once { .. } => None,
         Window::Uniform { length_s, .. } => Some(length_s).filter(|length_s| *length_s > 0.0),
     };
     let repeats = Repeats::of(&network.ideal);

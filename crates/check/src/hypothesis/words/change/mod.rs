@@ -62,6 +62,9 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
             Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
         },
         GraphEvidence::InEveryGraph { .. } => "graphs that repeat".into(),
+        GraphEvidence::Once { .. } => {
+            "graphs that repeat, or a run that is twice as long as what it needs to bring all together".into()
+        }
         GraphEvidence::Unheard { phase, closed_group, .. } => {
             let to = closed_group.first().map_or("", |agent| agent.name.as_str());
             format!("in phase {phase} an edge to {to} from the leader, or from an agent that hears it")

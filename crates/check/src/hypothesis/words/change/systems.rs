@@ -68,6 +68,11 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::TermNotShown { .. } => {
             "divisors, roots and logarithms of what is clearly positive, such as 1 + x^2".into()
         }
+        KindEvidence::TermNotSmooth { derivatives, .. } => {
+            format!(
+                "powers with whole exponents, with exponents of {derivatives} or more, or of what is clearly positive, such as 1 + x^2"
+            )
+        }
         KindEvidence::FactorBelowFloor { agent, value, .. } => {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
