@@ -48,5 +48,5 @@ pub use practical::{
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;
 pub use source::Source;
-pub use theorem::Theorem;
+pub use theorem::{Extension, Theorem};
 pub use theorems::check;

@@ -97,9 +97,40 @@ pub enum Theorem {
     Desired,
     /// What the author of a law, or of reference dynamics, from outside states, with its source.
     Declared(String),
+    /// Another statement, by an argument of ours that goes beyond it. It keeps the name of the other.
+    Extended {
+        /// The other.
+        theorem: Box<Theorem>,
+        /// How far beyond, in the order in which it is said; never empty.
+        by: Vec<Extension>,
+    },
+}
+
+/// What the paper has nowhere, and what its statements are extended to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extension {
+    /// What is heard counts by a nonlinear function of the difference, as in `coupling` of `forwardstep_sim`.
+    NonlinearCoupling,
+    /// Agents keep offsets, at rest or moving, from where all agree. The paper names formations only as a reason for consensus.
+    Offsets,
+}
+
+impl Extension {
+    fn words(self) -> &'static str {
+        match self {
+            Extension::NonlinearCoupling => "a nonlinear coupling",
+            Extension::Offsets => "offsets from where all agree",
+        }
+    }
 }
 
 impl Theorem {
+    /// This statement as far as it is extended by `by`, if by anything. What others state, and the baseline, is not ours to extend.
+    pub(crate) fn extended(self, by: Vec<Extension>) -> Theorem {
+        let ours = !matches!(self, Theorem::Declared(_) | Theorem::Backstepping);
+        if ours && !by.is_empty() { Theorem::Extended { theorem: Box::new(self), by } } else { self }
+    }
+
     /// The stable name, in kebab case.
     pub fn name(&self) -> &'static str {
         match self {
@@ -139,6 +170,7 @@ impl Theorem {
             Theorem::LeaderObserver => "leader-observer",
             Theorem::Desired => "desired-dynamics",
             Theorem::Declared(_) => "declared",
+            Theorem::Extended { theorem, .. } => theorem.name(),
         }
     }
 
@@ -181,7 +213,8 @@ impl Theorem {
             | Theorem::ThrustByAcceleration
             | Theorem::LeaderObserver
             | Theorem::CompositeLeader
-            | Theorem::Swarm => Source::Derived,
+            | Theorem::Swarm
+            | Theorem::Extended { .. } => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
     }
@@ -191,6 +224,10 @@ impl fmt::Display for Theorem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Theorem::Declared(source) => return write!(f, "as declared by its author: {source}"),
+            Theorem::Extended { theorem, by } => {
+                let by: Vec<&str> = by.iter().map(|extension| extension.words()).collect();
+                return write!(f, "{theorem}, with {} as derived for this software", by.join(" and "));
+            }
             Theorem::Theorem1 => "Theorem 1, reference dynamics (3)",
             Theorem::Remark3 => "Remark 3, reference dynamics (23)",
             Theorem::Theorem2 => "Theorem 2, reference dynamics (a1)",

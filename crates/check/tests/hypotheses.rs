@@ -4,14 +4,18 @@ use forwardstep_sim::reference::PureIntegral;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use crate::common::kinds::{rest_at, vehicle};
 use crate::common::{arm, edge, masses, setup};
 use forwardstep_check::hypothesis::{FollowingEvidence, LinkEvidence, ReferenceEvidence, Subject};
 use forwardstep_check::{Answer, Evidence, Id, Rigour, Source, Theorem, check};
+use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
-use forwardstep_sim::Exchange;
+use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::formula::{BoundedFormula, Witness};
 use forwardstep_sim::schedule::{Phase, Schedule};
+use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::{Exchange, ThrustKind};
 
 /// Names may join this list. None may leave it or change: certificates, waivers and summaries of earlier versions refer to them.
 const NAMES: [&str; 64] = [
@@ -205,4 +209,37 @@ fn what_was_drawn_is_given_and_what_repeats_is_exact() {
     assert_eq!(tree(random(vec![first(), first()])), (Answer::Violated, Rigour::Exact, false));
     assert_eq!(tree(periodic(vec![first(), second()])), (Answer::Holds, Rigour::Exact, false));
     assert_eq!(tree(periodic(vec![first(), first()])), (Answer::Violated, Rigour::Exact, false));
+}
+
+/// The paper has linear couplings, and nobody in it keeps an offset: it names formations as a reason for consensus.
+#[test]
+fn regress_what_a_theorem_is_extended_to_is_not_the_papers() {
+    let fixed = || Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0)]);
+    let mut coupled = masses(Exchange::Position, 2, fixed(), vec![Delay::constant(0.1)]);
+    let plain = check(&coupled).theorem;
+    assert_eq!((plain.name(), plain.source()), ("theorem-3-positions", Source::Corrected("E2")));
+    for coupling in [Coupling::Saturated { limit: 0.1 }, Coupling::Tanh { scale: 1.0 }] {
+        coupled.network.coupling = coupling;
+        let theorem = check(&coupled).theorem;
+        assert_eq!((theorem.name(), theorem.source()), (plain.name(), Source::Derived));
+        assert_eq!(theorem.to_string(), format!("{plain}, with a nonlinear coupling as derived for this software"));
+    }
+    let floor = Floor::Stops(0.5);
+    for (design, name) in [
+        (ThrustKind::Continuous, "continuous-thrust"),
+        (ThrustKind::Differentiable { alpha_star: 4.0, stiffness: 20.0 }, "theorem-4"),
+    ] {
+        let two = vec![vehicle(design, floor), vehicle(design, floor)];
+        let mut flying =
+            setup(two, Exchange::Position, Schedule::fixed(vec![edge(0, 1, 1.0, 0)]), vec![Delay::constant(0.0)], 10.0);
+        let plain = check(&flying).theorem;
+        assert_eq!((plain.name(), plain.source()), (name, Source::Paper));
+        // Offsets at rest are none of the paper's either.
+        flying.agents[0].target = Trajectory::new(vec![rest_at(1.0), rest_at(0.0), rest_at(0.0)]).ok();
+        let report = check(&flying);
+        assert_eq!((report.theorem.name(), report.theorem.source()), (name, Source::Derived));
+        assert!(report.theorem.to_string().ends_with("with offsets from where all agree as derived for this software"));
+        let bounded = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::BoundedTarget).unwrap();
+        assert_eq!((bounded.place(), bounded.source()), ("own derivation", Source::Derived));
+    }
 }

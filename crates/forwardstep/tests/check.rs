@@ -4,6 +4,7 @@ mod derivation;
 mod narrow;
 mod protocols;
 mod smoothness;
+mod whose;
 
 use std::fs;
 

@@ -18,6 +18,8 @@ pub use evidence::{
 pub use id::Id;
 pub(crate) use words::{counterexample, numbers};
 
+use crate::source::Source;
+
 /// One hypothesis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
@@ -157,6 +159,26 @@ impl Hypothesis {
 
     pub(crate) fn about(id: Id, subject: Subject, evidence: impl Into<Evidence>) -> Hypothesis {
         Hypothesis { id, subject, evidence: evidence.into() }
+    }
+
+    /// Where the paper asks for it, as [`Id::place`]; the paper has no offsets.
+    pub fn place(&self) -> &'static str {
+        match self.subject {
+            Subject::Offsets { .. } => "own derivation",
+            Subject::Setup | Subject::Reference | Subject::Agent(_) | Subject::Targets { .. } | Subject::Drive(_) => {
+                self.id.place()
+            }
+        }
+    }
+
+    /// Whose hypothesis it is, as [`Id::source`].
+    pub fn source(&self) -> Source {
+        match self.subject {
+            Subject::Offsets { .. } => Source::Derived,
+            Subject::Setup | Subject::Reference | Subject::Agent(_) | Subject::Targets { .. } | Subject::Drive(_) => {
+                self.id.source()
+            }
+        }
     }
 
     /// What was found.

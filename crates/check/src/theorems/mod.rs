@@ -23,6 +23,7 @@ use crate::laws;
 use crate::links::{bounded_delays, bounded_weights, coupling};
 use crate::report::Report;
 use crate::surroundings::surroundings;
+use crate::theorem::Extension;
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
 ///
@@ -77,7 +78,15 @@ fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) ->
         Exchange::Position => {}
     }
     let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));
-    Report { theorem, promises, hypotheses }
+    Report { theorem: theorem.extended(extensions(setup)), promises, hypotheses }
+}
+
+/// What agents that agree do that no theorem of the paper speaks about, though its argument goes through.
+fn extensions(setup: &Setup) -> Vec<Extension> {
+    let nonlinear = setup.network.coupling.size().is_some();
+    let offsets = setup.agents.iter().any(|agent| agent.target.is_some());
+    let each = [(nonlinear, Extension::NonlinearCoupling), (offsets, Extension::Offsets)];
+    each.into_iter().filter(|(is, _)| *is).map(|(_, extension)| extension).collect()
 }
 
 /// Remark 4.

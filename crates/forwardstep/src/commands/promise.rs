@@ -4,7 +4,9 @@ use std::ops::ControlFlow;
 
 use forwardstep::check::prediction::guaranteed::WORK;
 use forwardstep::check::prediction::{COURSE_WORK, NoRate, course_within, guaranteed_rate, period_rate_within, rate};
-use forwardstep::check::{self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report};
+use forwardstep::check::{
+    self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report, Source,
+};
 use forwardstep::io::output::Predictions;
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::{Progress, Setup};
@@ -79,7 +81,9 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     for hypothesis in &report.hypotheses {
         let (style, words) = (style(hypothesis.answer()), hypothesis.answer().words());
         let (requires, name) = (hypothesis.requires(), hypothesis.id.name());
-        console.line(format_args!("  {style}{words}{style:#}: {requires} {DIM}[{name}]{DIM:#}"));
+        // What the paper asks for is the rule, and needs no mark.
+        let not_paper = if hypothesis.source() == Source::Derived { ", not in the paper" } else { "" };
+        console.line(format_args!("  {style}{words}{style:#}: {requires} {DIM}[{name}{not_paper}]{DIM:#}"));
         console.line(format_args!("    {DIM}{}{DIM:#}", hypothesis.because()));
         if let Some(change) = hypothesis.change() {
             console.line(format_args!("    to make it hold: {change}"));
@@ -100,7 +104,7 @@ fn show_practical(practical: &Practical, console: &mut Console) {
     if practical.findings.is_empty() {
         return;
     }
-    console.line(format_args!("{BOLD}Practical{BOLD:#}: {}", check::Source::Derived.words()));
+    console.line(format_args!("{BOLD}Practical{BOLD:#}: {}", Source::Derived.words()));
     for finding in &practical.findings {
         let style = match finding.answer() {
             PracticalAnswer::Bound => DIM,

@@ -63,8 +63,8 @@ impl Verdicts {
             hypotheses: (report.hypotheses.iter())
                 .map(|h| Verdict {
                     id: Some(h.id.name().to_owned()),
-                    place: Some(h.id.place().to_owned()),
-                    source: Some(h.id.source().words()),
+                    place: Some(h.place().to_owned()),
+                    source: Some(h.source().words()),
                     rigour: Some(h.rigour().word().to_owned()),
                     requires: h.requires(),
                     answer: h.answer().words().to_owned(),

@@ -82,8 +82,8 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                                         p.because { "To make it hold: " (change) }
                                     }
                                     p.origin {
-                                        code { (hypothesis.id.name()) } " · " (hypothesis.id.place()) " · "
-                                        (hypothesis.id.source().words()) " · " (hypothesis.rigour().word())
+                                        code { (hypothesis.id.name()) } " · " (hypothesis.place()) " · "
+                                        (hypothesis.source().words()) " · " (hypothesis.rigour().word())
                                     }
                                 }
                             }
