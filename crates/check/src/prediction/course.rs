@@ -3,16 +3,18 @@
 use std::ops::ControlFlow;
 
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Progress, Recording, Setup, Signal};
+use forwardstep_sim::{Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, Recording, Setup, Signal, ThrustLaw};
 use thiserror::Error;
 
-use crate::kinds::is_lagrangian;
+use crate::agreement::{NoPrediction, predict};
+use crate::kinds::{is_its_own_reference, is_lagrangian};
 use crate::practical::{Gains, start_energy_j};
+use crate::surroundings::acts;
 
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, ideal, start_error, told_before};
 use super::settled::{Settled, settled};
-use super::torque::{PeakTorque, peak_torques};
+use super::torque::{PeakTorque, peak_torques, relative_error};
 use super::unfinished::{Unfinished, completed, simulated};
 
 /// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
@@ -33,6 +35,8 @@ pub struct Course {
     pub peak_torques: Vec<PeakTorque>,
     /// How far a run begins from this course.
     pub start: StartError,
+    /// Whether s can move the value, so that a run in which s is not zero may agree elsewhere.
+    pub moved_by_s: bool,
 }
 
 /// How far from s ≡ 0 a run begins.
@@ -42,6 +46,8 @@ pub struct StartError {
     pub s: f64,
     /// V(0) of all robots under (6)–(7) together, J; `None` where it is not known.
     pub energy_j: Option<f64>,
+    /// The largest relative error of an estimate of any law; zero where all is known.
+    pub estimate_off: f64,
 }
 
 impl StartError {
@@ -53,8 +59,60 @@ impl StartError {
         let energies: Option<Vec<f64>> = robots.map(energy).collect();
         let energy_j =
             energies.filter(|all| !all.is_empty()).map(|all| all.iter().sum()).filter(|sum: &f64| sum.is_finite());
-        StartError { s: errors.fold(0.0, f64::max), energy_j }
+        let estimate_off = setup.agents.iter().map(estimate_off).fold(0.0, f64::max);
+        StartError { s: errors.fold(0.0, f64::max), energy_j, estimate_off }
     }
+}
+
+/// Whether s can move the value that is agreed upon. Over a fixed graph with constant delays Q of `agreement` holds it whatever s does,
+/// where s drops out of Q; there `predict` has a value. While graphs or delays change nothing holds it, and q̇ = z + s makes positions run
+/// on by ∫ s, unless s ≡ 0 is what a run has. Without a measured velocity z stands in the place of q̇ in all that is conserved, and ∫ s
+/// is never in it. With λ of Remark 4, and by forces under (46), Q itself moves.
+fn moved_by_s(setup: &Setup) -> bool {
+    let conserved = match predict(setup) {
+        // Q is there, and too few of its digits, or that all come to rest by it.
+        Ok(_) | Err(NoPrediction::Uncertain { .. } | NoPrediction::ComplexRoots { .. }) => true,
+        Err(_) => false,
+    };
+    let moves_it = |agent: &AgentSetup| {
+        agent.manipulability != 0.0 || is_its_own_reference(agent) && agent.pushes.iter().any(acts)
+    };
+    let held = conserved && !setup.agents.iter().any(moves_it);
+    let nothing_moves = setup.control.is_none() && setup.agents.iter().all(stays_zero);
+    !(held || nothing_moves)
+}
+
+/// Whether s of an agent begins at zero, and nothing drives it away: of (6)–(7) and (a8) with the true parameters, and under (46), which has none.
+fn stays_zero(agent: &AgentSetup) -> bool {
+    let rubs = !agent.robot.interface().drives.friction.is_empty();
+    if rubs || agent.enforce_limits || agent.pushes.iter().any(acts) {
+        return false;
+    }
+    let from_reference = || {
+        let at_rest = vec![0.0; agent.start.dq.len()];
+        let followed = if agent.law.is::<PositionOnlyLaw>() { &at_rest } else { &agent.start.dq };
+        *agent.start.reference.first().unwrap_or(followed) == agent.start.dq
+    };
+    let leads = is_lagrangian(agent) || agent.law.is::<PositionOnlyLaw>();
+    is_its_own_reference(agent) || leads && from_reference() && estimate_off(agent) == 0.0
+}
+
+/// The largest relative error that an estimate of the agent's law starts with.
+fn estimate_off(agent: &AgentSetup) -> f64 {
+    let law = &agent.law;
+    let mass: Option<f64> = law
+        .downcast()
+        .map(|law: &PositionOnlyLaw| law.estimate_start)
+        .or_else(|| law.downcast().and_then(|law: &ThrustLaw| law.design.estimate_start()));
+    let mass = mass.as_ref().map(std::slice::from_ref);
+    let own = || law.downcast().map(|law: &Adaptive| law.estimate_start.as_slice());
+    let chain = || law.downcast().and_then(ChainLaw::estimate).map(|estimate| estimate.start.as_slice());
+    let estimate = mass.or_else(own).or_else(chain).unwrap_or_default();
+    estimate
+        .iter()
+        .zip(&agent.robot.theta)
+        .map(|(estimate, theta)| relative_error(*estimate, *theta))
+        .fold(0.0, f64::max)
 }
 
 /// Why the course of agreement cannot be predicted.
@@ -84,7 +142,8 @@ impl Course {
 
 /// Predicts the course of agreement of `setup` by simulating [`ideal`]; `observer` as that of [`simulate`](forwardstep_sim::simulate).
 ///
-/// **Guarantees**: where ϑ is known and z(0) = q̇(0) it is that of the robots, to the tolerance of the solver. Otherwise it is a prediction for s ≡ 0.
+/// **Guarantees**: where ϑ is known and z(0) = q̇(0) it is that of the robots, to the tolerance of the solver. Otherwise it is a prediction for s ≡ 0,
+/// and so is the value where it is [`Course::moved_by_s`].
 ///
 /// # Errors
 /// [`NoCourse`] when there is none.
@@ -120,8 +179,8 @@ pub fn course_within(
     };
     let settled = settled(&recording.t_s, &disagreement);
     let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
-    let start = StartError::of(setup);
-    Ok(Course { disagreement, value, within, settled, peak_torques, start, t_s: recording.t_s })
+    let (start, moved_by_s) = (StartError::of(setup), moved_by_s(setup));
+    Ok(Course { disagreement, value, within, settled, peak_torques, start, moved_by_s, t_s: recording.t_s })
 }
 
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.

@@ -237,8 +237,11 @@ fn estimate_off(agent: &AgentSetup) -> Option<f64> {
         return Some(0.0);
     }
     let Adaptive { estimate_start, .. } = agent.law.downcast()?;
-    let off = |(estimate, theta): (&f64, &f64)| {
-        if estimate == theta { 0.0 } else { ((estimate - theta) / theta).abs() }
-    };
+    let off = |(estimate, theta): (&f64, &f64)| relative_error(*estimate, *theta);
     Some(estimate_start.iter().zip(&agent.robot.theta).map(off).fold(0.0, f64::max))
+}
+
+/// |ϑ̂ − ϑ| over |ϑ|.
+pub(super) fn relative_error(estimate: f64, theta: f64) -> f64 {
+    if estimate == theta { 0.0 } else { ((estimate - theta) / theta).abs() }
 }

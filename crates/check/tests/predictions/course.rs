@@ -233,6 +233,9 @@ fn what_has_no_effect_while_everybody_follows_is_left_out() {
     // What is commanded may then be another, so that V may grow.
     assert!(busy.peak_torques.iter().all(|peak| peak.at_most.is_none()));
     plain.peak_torques.iter_mut().for_each(|peak| assert!(peak.at_most.take().is_some()));
+    // Sampling leaves some of s, and the graph switches.
+    assert!(busy.moved_by_s && !plain.moved_by_s);
+    plain.moved_by_s = true;
     assert!(busy == plain);
 }
 

@@ -5,13 +5,14 @@ use forwardstep_check::{NoCourse, predict};
 use forwardstep_core::Gain;
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, Exchange, Setup, Signal};
+use forwardstep_sim::{Adaptive, AgentSetup, Exchange, Known, Setup, Signal};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::course::predicted;
 use super::{ends, three};
-use crate::common::{column, edge, run};
+use crate::common::kinds::blind_mass;
+use crate::common::{column, edge, run, setup};
 
 /// Masses that hear velocities late, of which one has a z(0) beside its velocity.
 fn beside(exchange: Exchange, order: usize) -> Setup {
@@ -130,4 +131,61 @@ fn eq_what_v_can_add_to_a_torque_counts_those_alone_who_are_heard_in_the_graph_t
         let found = peaks.iter().find(|peak| peak.agent == 1).unwrap();
         assert!((found.at_most.unwrap() - expected).abs() < 1e-6 * expected, "{found:?} {expected}");
     }
+}
+
+/// Two over a graph that switches once, and comes to stay.
+fn settling(agents: Vec<AgentSetup>, exchange: Exchange) -> Setup {
+    let phase = |edges, dwell_s| Phase { edges, dwell_s };
+    let first = phase(vec![edge(0, 1, 1.0, 0)], 1.7);
+    let last = phase(vec![edge(0, 1, 3.0, 0), edge(1, 0, 3.0, 0)], 1.0);
+    let mut setup = setup(agents, exchange, Schedule::once(vec![first, last]), vec![Delay::constant(0.0)], 60.0);
+    setup.time.record_every_s = 0.1;
+    setup
+}
+
+#[test]
+fn regress_a_value_that_s_can_move_is_said_to_be_that_without_s() {
+    // Masses without a velocity, and masses under (6): of both the estimate starts where it is told to.
+    let blind = |estimate| {
+        let mut agents = [blind_mass(3.0, estimate), blind_mass(3.0, estimate)];
+        (agents[0].start.q, agents[1].start.q) = (vec![1.6], vec![-1.4]);
+        settling(agents.to_vec(), Exchange::Position)
+    };
+    let adapted = |estimate| {
+        let mut agents = three(Exchange::PositionVelocity).agents[..2].to_vec();
+        for agent in &mut agents {
+            let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
+            let estimate_start = vec![estimate * agent.robot.theta[0]];
+            agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start, bounds: None });
+        }
+        settling(agents, Exchange::PositionVelocity)
+    };
+    for (setup, off, known) in
+        [(blind(0.2), 0.9, false), (blind(2.0), 0.0, true), (adapted(0.0), 1.0, false), (adapted(1.0), 0.0, true)]
+    {
+        let course = predicted(&setup);
+        let ([low, high], reached) = (course.within.clone().unwrap()[0], ends(&setup, 0, 0));
+        assert_eq!((course.moved_by_s, course.start.estimate_off), (!known, off), "{low} {high} {reached}");
+        assert_eq!(low - 1e-4 < reached && reached < high + 1e-4, known, "{reached} and {low} to {high}");
+    }
+}
+
+#[test]
+fn a_value_that_is_conserved_whatever_s_does_needs_no_mark() {
+    let mut fixed = three(Exchange::PositionVelocity);
+    for agent in &mut fixed.agents {
+        let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(2.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0], bounds: None });
+    }
+    assert!(!predicted(&fixed).moved_by_s && predict(&fixed).is_ok());
+    // Remark 4, which `predict` has nothing for either.
+    fixed.agents[0].manipulability = 0.5;
+    assert!(predicted(&fixed).moved_by_s && predict(&fixed).is_err());
+    // With the true parameters s is zero, until somebody pushes.
+    for agent in &mut fixed.agents {
+        agent.law = Arc::new(Known { damping: Gain::Number(5.0) });
+    }
+    assert!(!predicted(&fixed).moved_by_s);
+    fixed.agents[0].pushes.push(super::pushed_for_ever(1.0));
+    assert!(predicted(&fixed).moved_by_s);
 }

@@ -222,3 +222,28 @@ fn what_is_predicted_beside_a_start_that_is_not_on_its_course_says_so() {
     let text = stdout(&forwardstep(&folder, &["check", "two.toml", "--predict"]).success());
     assert!(text.contains("settled to 1 % after") && !text.contains("can delay it"), "{text}");
 }
+
+#[test]
+fn regress_a_value_that_only_s_zero_leads_to_is_said_to_be_that() {
+    let blind = |estimate: &str, edges: &str| {
+        let agent = |name: &str, at: f64| {
+            format!(
+                "[[agents]]\nname = \"{name}\"\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\nstart.position_m = [{at}]\n"
+            )
+        };
+        let law = format!("[law.position_only]\n{estimate}\n");
+        let text = format!(
+            "format = 2\ntime.end_s = 60\n{}{}[reference.consensus]\nexchange = \"position\"\nroots_per_s = [1, 2]\n{law}[network]\n{edges}\n",
+            agent("a", 1.6),
+            agent("b", -1.4)
+        );
+        let folder = with(&text);
+        stdout(&forwardstep(&folder, &["check", "two.toml", "--predict"]).success())
+    };
+    let fixed = "edges = [[\"a\", \"b\"], [\"b\", \"a\"]]";
+    let text = blind("", fixed);
+    assert!(text.contains("(but estimates start far from the truth, which can delay it)"), "{text}");
+    assert!(text.contains(" with s ≡ 0; an s that is not zero moves it\n"), "{text}");
+    let text = blind("estimate_start_kg = 2", fixed);
+    assert!(text.contains("value agreed upon (") && !text.contains("moves it"), "{text}");
+}

@@ -65,6 +65,12 @@ pub struct CourseFound {
     /// V(0) of all robots under the adaptive or the known law, J; null where it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start_energy_j: Option<f64>,
+    /// The largest relative error that an estimate starts with; null where all is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimate_off: Option<f64>,
+    /// Whether s can move the value, so that it is that of s ≡ 0 alone; absent where it cannot, and where an earlier version predicted.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub moved_by_s: bool,
 }
 
 /// The largest torque of an axis.
@@ -250,6 +256,8 @@ impl CourseFound {
                 .collect(),
             start_error: Some(course.start.s).filter(|s| *s > 0.0),
             start_energy_j: course.start.energy_j,
+            estimate_off: Some(course.start.estimate_off).filter(|off| *off > 0.0 && off.is_finite()),
+            moved_by_s: course.moved_by_s,
         }
     }
 
@@ -259,7 +267,8 @@ impl CourseFound {
             Some(energy_j) if energy_j > 0.0 => format!(", V from {} J", number_words(energy_j)),
             Some(_) | None => String::new(),
         };
-        let off = self.peak_torques.iter().map(|peak| peak.estimate_off).fold(0.0, f64::max);
+        let torques = self.peak_torques.iter().map(|peak| peak.estimate_off);
+        let off = torques.chain(self.estimate_off).fold(0.0, f64::max);
         let begins = self.start_error.map(|s| {
             let unit = names::gap_unit(setup);
             let unit = if unit.is_empty() { "in its unit".to_owned() } else { format!("{unit}/s") };
@@ -310,7 +319,11 @@ impl CourseFound {
         // (58) ends where ṡ is zero, not s.
         let leaves_some = |law: &ThrustLaw| law.design.estimate_start().is_some();
         let moved = setup.agents.iter().any(|agent| agent.law.downcast().is_some_and(leaves_some));
-        let moved = if moved { "; an s that stays, as adapted masses leave one, moves it" } else { "" };
+        let moved = match (moved, self.moved_by_s) {
+            (true, _) => "; an s that stays, as adapted masses leave one, moves it",
+            (false, true) => " with s ≡ 0; an s that is not zero moves it",
+            (false, false) => "",
+        };
         let what = names::value_words(setup).to_lowercase();
         Some(format!("{what} agreed upon ({}{more}), to ± {}{moved}", middles.join(", "), number_words(widest)))
     }
@@ -368,6 +381,7 @@ mod tests {
             settled: forwardstep_check::prediction::Settled::NotYet,
             peak_torques: Vec::new(),
             start: forwardstep_check::prediction::StartError::default(),
+            moved_by_s: false,
         };
         let found = CourseFound::of(&course);
         assert!(found.t_s.len() <= MOST_POINTS + 1);

@@ -94,11 +94,12 @@ fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String
     let Some(within) = course.within.as_ref().filter(|_| course.reached) else { return Vec::new() };
     let mean = |axis: usize| metrics.final_means.as_ref().and_then(|means| means.get(axis)).copied();
     let agreed = if metrics.disagreement.is_agreement() { "" } else { " (mean, not agreed)" };
+    let for_zero = if course.moved_by_s { " with s ≡ 0" } else { "" };
     let row = |(axis, [low, high]): (usize, &[f64; 2])| {
         let half = 0.5 * (high - low);
         (
             format!("{}, {}", names::value_words(setup), names::axis_words(setup, 0, axis)),
-            format!("{} ± {}", number(low + half), number(half)),
+            format!("{} ± {}{for_zero}", number(low + half), number(half)),
             mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{agreed}", number(mean))),
         )
     };
