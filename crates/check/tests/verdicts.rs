@@ -4,6 +4,7 @@ mod asked;
 mod complex_roots;
 mod designs;
 mod failures;
+mod free_fall;
 mod sampling;
 
 use forwardstep_sim::reference::Backstepping;

@@ -1,11 +1,13 @@
 //! Vehicles with one thrust whose angular velocity is an input: (44)–(58), Theorems 4 and 5.
 
 use forwardstep_core::controller::Floor;
+use forwardstep_core::expression::Interval;
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::{AgentSetup, Setup, ThrustKind, ThrustLaw, VehicleModel};
+use forwardstep_sim::{AgentSetup, RotorcraftModel, Setup, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::bounds::within_bounds;
 use super::{Claim, KindCheck};
+use crate::hypothesis::numbers::seconds;
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named};
 use crate::theorem::Theorem;
 
@@ -133,11 +135,59 @@ fn thrust(setup: &Setup, agents: &[usize]) -> Hypothesis {
         Floor::Stops(_) => None,
     });
     let floors = with_laws(setup, agents).map(|(_, _, law)| law.floor.newtons());
-    let evidence = match kept {
+    let falls =
+        with_laws(setup, agents).find_map(|(index, agent, law)| falls(setup, index, agent, law.floor.newtons()));
+    let evidence = falls.unwrap_or_else(|| match kept {
         Some((index, floor_n)) => KindEvidence::ThrustKept { agent: Named::of(setup, index), floor_n },
         None => KindEvidence::ThrustFloor { least_n: floors.fold(f64::INFINITY, f64::min) },
-    };
+    });
     Hypothesis::new(Id::NonzeroThrust, evidence)
+}
+
+/// Looks at the acceleration of an offset during a run.
+const LOOKS: u32 = 4000;
+
+/// That an offset d takes its thrust below the floor. x − d comes to rest where all agree, and its derivatives vanish, so that σ R e₃ comes to
+/// m (g e₃ − d̈): what that is at one time it is again and again, if d̈ comes back. A d̈ that does not may be over before anybody agrees.
+fn falls(setup: &Setup, index: usize, agent: &AgentSetup, floor_n: f64) -> Option<KindEvidence> {
+    let kind = &agent.robot.kind;
+    let of_vehicle = kind.downcast().map(|VehicleModel { gravity }| *gravity);
+    let gravity = of_vehicle.or_else(|| kind.downcast().map(|RotorcraftModel { gravity, .. }| *gravity))?;
+    let (mass, offset) = (*agent.robot.theta.first()?, agent.target.as_ref()?);
+    let weight = [0.0, 0.0, gravity];
+    let nearest = |(axis, weight): (usize, &f64)| {
+        let within = Interval::point(*weight) - offset.hull(axis, 2, None);
+        within.low.max(-within.high).max(0.0)
+    };
+    let least = mass * norm(weight.iter().enumerate().map(nearest));
+    if offset.axes() != weight.len() || least > floor_n || !offset.derivatives_recur() {
+        return None;
+    }
+    let thrust_n = |t_s: f64| {
+        let mut jets = [[0.0; 5]; 3];
+        offset.jets(t_s, &mut jets);
+        mass * norm(jets.iter().zip(weight).map(|(jet, weight)| weight - jet[2]))
+    };
+    let time = |look: u32| setup.time.end_s * f64::from(look) / f64::from(LOOKS);
+    (0..=LOOKS).find_map(|look| {
+        let [mut left, mut right] = [time(look.saturating_sub(1)), time(look + 1)];
+        // What is not lowest here is looked at where it is.
+        if thrust_n(time(look)) > thrust_n(left).min(thrust_n(right)) {
+            return None;
+        }
+        for _ in 0..60 {
+            let third = (right - left) / 3.0;
+            if thrust_n(left + third) < thrust_n(right - third) { right -= third } else { left += third }
+        }
+        let t_s = seconds(left);
+        let found = KindEvidence::FallsFreely { agent: Named::of(setup, index), t_s, thrust_n: thrust_n(t_s), floor_n };
+        // By more than rounding.
+        (thrust_n(t_s) < floor_n * (1.0 - 1e-9)).then_some(found)
+    })
+}
+
+fn norm(entries: impl Iterator<Item = f64>) -> f64 {
+    entries.map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 /// Those that the reference dynamics are differentiated into.

@@ -5,7 +5,7 @@
 
 use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Intervals, Number, Unary};
 
-use super::{ROUNDING, Sinusoid, sinusoids};
+use super::{Path, ROUNDING, Sinusoid, Trajectory, sinusoids};
 
 /// Coefficients are known to this part: what sums of them are given as room covers it many times.
 const EXACT: f64 = 1e-13;
@@ -20,6 +20,18 @@ pub(super) fn narrowed(found: Interval, formula: &Expression, weights: &[f64]) -
     let both = Interval { low: found.low.max(by_waves.low), high: found.high.min(by_waves.high) };
     // Of what is no number nothing is known by this either.
     if both.low <= both.high { both } else { found }
+}
+
+impl Trajectory {
+    /// Whether its derivatives come back again and again, for ever, as closely as one likes to what they are at any time: those of waves, whose
+    /// sums are almost periodic, of what has a period, and of a drift. `false` where that is not seen.
+    pub fn derivatives_recur(&self) -> bool {
+        self.paths().iter().all(|path| match path {
+            Path::Sinusoids { .. } => true,
+            Path::Formula(formula) => formula.period().is_some() || formula.fold(&mut Waves).is_some(),
+            Path::Spline(_) => false,
+        })
+    }
 }
 
 /// A constant and waves.

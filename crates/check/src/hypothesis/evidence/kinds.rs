@@ -51,6 +51,17 @@ pub enum KindEvidence {
         /// The floor, N.
         floor_n: f64,
     },
+    /// An offset that can be kept only with a thrust below its floor, again and again.
+    FallsFreely {
+        /// Whose.
+        agent: Named,
+        /// When, s.
+        t_s: f64,
+        /// The thrust that keeps it then, N.
+        thrust_n: f64,
+        /// The floor, N.
+        floor_n: f64,
+    },
     /// Accelerometers give ẍ as it is.
     AccelerationUnbiased,
     /// One gives too much.
@@ -314,6 +325,7 @@ impl KindEvidence {
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::ParameterOutside { .. }
+            | KindEvidence::FallsFreely { .. }
             | KindEvidence::TermFails { .. }
             | KindEvidence::RankDeficient { .. }
             | KindEvidence::HalfTurn
@@ -371,7 +383,9 @@ impl KindEvidence {
             | KindEvidence::HalfTurn
             | KindEvidence::TermNotShown { .. }
             | KindEvidence::TermNotSmooth { .. } => Rigour::Enclosed,
-            KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => Rigour::Computed,
+            KindEvidence::FallsFreely { .. } | KindEvidence::RankDeficient { .. } | KindEvidence::Momentum(_) => {
+                Rigour::Computed
+            }
             KindEvidence::ThrustFloor { .. }
             | KindEvidence::FactorFloor { .. }
             | KindEvidence::BoundedStates { .. }

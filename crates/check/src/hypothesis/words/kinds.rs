@@ -5,7 +5,7 @@ use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::ThrustKind;
 use forwardstep_sim::probe::{Counterexample, Probe};
 
-use super::numbers::{rounded, rounded_down};
+use super::numbers::{as_it_is, rounded, rounded_down};
 use crate::hypothesis::{FactorEverywhere, KindEvidence, Named, Term};
 
 /// States that are written out.
@@ -35,6 +35,13 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::ThrustKept { agent, floor_n } => format!(
             "that of {} is kept above {} N by a saturation; where it acts the vehicle does not do what the law asks for",
             agent.name,
+            rounded(*floor_n)
+        ),
+        KindEvidence::FallsFreely { agent, t_s, thrust_n, floor_n } => format!(
+            "where all agree {} keeps its offset with a thrust of {} N at t = {} s, and again and again; its floor is {} N",
+            agent.name,
+            rounded(*thrust_n),
+            as_it_is(*t_s),
             rounded(*floor_n)
         ),
         KindEvidence::AngularRate { agent, bandwidth_per_s, design } => rate(agent, *bandwidth_per_s, *design),

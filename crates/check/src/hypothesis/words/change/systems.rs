@@ -46,6 +46,9 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::BoundedStates { .. }
         | KindEvidence::SingularValue { .. }
         | KindEvidence::Determinant { .. } => RUN.into(),
+        KindEvidence::FallsFreely { agent, .. } => {
+            format!("an offset of {} whose acceleration keeps away from that of free fall", agent.name)
+        }
         KindEvidence::AttitudeNotShown { .. } | KindEvidence::HalfTurn => {
             "a start, or an attitude of the target, that is not half a turn away".into()
         }
