@@ -1,5 +1,6 @@
 //! Verdicts about following a leader.
 
+mod piloted;
 mod sign;
 mod told;
 mod turns;

@@ -2,16 +2,18 @@
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
+use forwardstep_sim::push::Push;
 
 use super::own_targets::how_far;
 use super::swarm;
 use crate::graphs::{dwell_time, fixed_graph, leader_in_every_graph, leader_reaches_all};
 use crate::hypothesis::numbers::rounded_up;
-use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, ReferenceEvidence, Subject};
-use crate::kinds::starts_from_zero;
+use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
+use crate::kinds::{is_lagrangian, starts_from_zero};
 use crate::late_leader::{behind, held};
 use crate::links::{bounded_delays, bounded_weights, constant_weights, is_late, no_delay};
 use crate::report::Report;
+use crate::surroundings::{acts, dry_loss_w, ends_s};
 use crate::theorem::Theorem;
 
 /// Times at which a leader is looked at whose bounds could not be shown.
@@ -176,9 +178,30 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
                 end_s,
             }
         }
-        None => FollowingEvidence::GainOverAgent { gamma },
+        None => over_target(setup, following).unwrap_or(FollowingEvidence::GainOverAgent { gamma }),
     };
     Hypothesis::about(Id::SignGain, Subject::Drive(following.design), evidence)
+}
+
+/// That a leader which is an agent is driven away harder than γ along its target, where it reaches γ again and again.
+///
+/// It comes to keep to its target, q_0 − q_d → 0 and q̇_0 − q̇_d → 0. If from some time on no entry of ξ̇_0 exceeded γ, its integrals over short times
+/// would not exceed γ times these, and neither would those of the target, up to what vanishes: its accelerations need not converge for
+/// that. So a target that exceeds γ again and again refutes it. Before the leader arrives the run says what drives it.
+fn over_target(setup: &Setup, following: &Following) -> Option<FollowingEvidence> {
+    let (vertex, gamma) = (setup.leader()?, following.gain);
+    let agent = setup.agents.get(vertex)?;
+    let target = agent.target.as_ref().filter(|target| setup.tracks(vertex) && target.derivatives_recur())?;
+    let reached =
+        target.seen_to_reach(&following.drive(), gamma, setup.time.end_s).filter(|at| at.value.abs() > gamma)?;
+    let ends = |push: &Push| !acts(push) || ends_s(push).is_finite();
+    let arrives = is_lagrangian(agent)
+        && setup.control.is_none()
+        && !agent.enforce_limits
+        && dry_loss_w(agent).is_none()
+        && agent.pushes.iter().all(ends);
+    let seen = target.sampled_peak(&following.drive(), setup.time.end_s, LOOKS).max(reached.value.abs());
+    Some(FollowingEvidence::GainOverTarget { gamma, leader: Named::of(setup, vertex), reached, seen, arrives })
 }
 
 /// A sign that is solved for every h seconds is held in between, while the leader is driven away at ξ̇₀: ξ_i − ξ_0 comes back to

@@ -3,7 +3,7 @@
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::formula::Witness;
 
-use crate::hypothesis::{Answer, Rigour};
+use crate::hypothesis::{Answer, Named, Rigour};
 
 /// What was found of the design that follows a leader.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +29,19 @@ pub enum FollowingEvidence {
     GainOverAgent {
         /// γ.
         gamma: f64,
+    },
+    /// γ beside what drives an agent that leads where it keeps to a target, again and again.
+    GainOverTarget {
+        /// γ.
+        gamma: f64,
+        /// Who leads.
+        leader: Named,
+        /// When its target reaches γ, and its value then.
+        reached: Witness,
+        /// The largest value seen by sampling it.
+        seen: f64,
+        /// Whether nothing keeps it from its target for good.
+        arrives: bool,
     },
     /// How a value of the sign is chosen.
     Sign {
@@ -84,6 +97,8 @@ impl FollowingEvidence {
             FollowingEvidence::Gain { gamma, for_ever, .. } if for_ever < gamma => Answer::Holds,
             FollowingEvidence::Gain { .. } => Answer::NotShown,
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
+            FollowingEvidence::GainOverTarget { arrives: true, .. } => Answer::Violated,
+            FollowingEvidence::GainOverTarget { arrives: false, .. } => Answer::NotShown,
             FollowingEvidence::Sign { choice, period_s, rate_per_s, end_s, .. } => match choice {
                 Choice::Implicit if period_s * rate_per_s > MOST_HELD || period_s >= end_s => Answer::NotCovered,
                 Choice::Implicit => Answer::Holds,
@@ -104,7 +119,7 @@ impl FollowingEvidence {
                 Answer::HoldsOnHorizon | Answer::NotShown | Answer::NotCovered | Answer::Watched => Rigour::Sampled,
             },
             FollowingEvidence::GainOverAgent { .. } => Rigour::Watched,
-            FollowingEvidence::CouplingExceeds { .. } => Rigour::Enclosed,
+            FollowingEvidence::GainOverTarget { .. } | FollowingEvidence::CouplingExceeds { .. } => Rigour::Enclosed,
             FollowingEvidence::CouplingNotShown { .. } => Rigour::Computed,
             FollowingEvidence::Sign { .. }
             | FollowingEvidence::Shared { .. }

@@ -24,6 +24,16 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
             "γ is {}; the leader is an agent, and the run says how large it becomes, and when it exceeds γ for the last time",
             as_it_is(*gamma)
         ),
+        FollowingEvidence::GainOverTarget { gamma, leader, reached: Witness { t_s, value }, arrives, .. } => {
+            let keeps = if *arrives { "comes to keep to" } else { "is to keep to" };
+            format!(
+                "γ is {}, and {} {keeps} a target along which it is {} at t = {} s, and again and again",
+                as_it_is(*gamma),
+                leader.name,
+                reached_above(value.abs(), *gamma),
+                rounded(*t_s)
+            )
+        }
         FollowingEvidence::Sign { choice, sampled, period_s, left, end_s, .. } => {
             let every = match sampled {
                 false => format!("every {} s", seconds(*period_s)),

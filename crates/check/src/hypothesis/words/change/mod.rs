@@ -210,6 +210,9 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
             "a leader whose motion can be bounded for all time, and γ above that bound, which is at least {}",
             rounded_down(*seen)
         ),
+        FollowingEvidence::GainOverTarget { seen, .. } => {
+            format!("γ above what drives the leader, which along its target is at least {}", rounded_down(*seen))
+        }
         FollowingEvidence::GainOverAgent { .. } => "a leader whose motion is given before the run".into(),
         FollowingEvidence::Sign { choice, sampled, rate_per_s, end_s, .. } => match choice {
             Choice::Implicit if *sampled => format!("`sample_hz` of at least {}", rounded_up(rate_per_s / MOST_HELD)),
