@@ -1626,7 +1626,7 @@ def delays(claim, bound_s, enclosures, given):
             require(given, (link := (scenario.names[edge.source], scenario.names[edge.to])) in ages, f"lacks the link of {link}")
             worst, always = ages[link].number(), False
             # An age as large as the run is bounded by that alone.
-            require(ages[link], not_negative(body.get("latency_s"), "latency_s") <= worst <= scenario.end_s / 2, "is too small or too large")
+            require(ages[link], not_negative(body.get("latency_s"), "latency_s") <= worst <= scenario.end_s / 2, "is out of range")
         largest = max(largest, worst)
     require(bound_s, largest <= bound_s.number(), f"is exceeded: a delay may reach {said(largest)} s")
     return always

@@ -669,6 +669,8 @@ class FalseProofs(unittest.TestCase):
         self.rejected(name, each, "is exceeded", lambda entry: entry["proof"].update(longest_s="1.6"))
         # What is left after the last window counts, too.
         self.rejected(name, each, "is exceeded", lambda entry: entry["proof"].update(windows=entry["proof"]["windows"][:2]))
+        few = lambda entry: entry["proof"].update(windows=entry["proof"]["windows"][:2], longest_s="100")  # noqa: E731
+        self.rejected(name, each, "waits for half of the run", few)
         self.rejected(name, each, "more than the proof shows", lambda entry: entry.update(answer="holds"))
 
     def test_groups_that_cut(self):
@@ -705,7 +707,10 @@ class FalseProofs(unittest.TestCase):
         self.rejected("formulas", "bounded-weights", "does not hold", lambda entry: None, ("1.5*sin(2*t)", "1.8*sin(2*t)"))
         slow = lambda entry: entry["proof"]["enclosures"][0].update(range="period", cells=64)  # noqa: E731
         self.rejected("formulas", "bounded-weights", "does not hold", slow, ("+ 1.5*sin(2*t)", "+ 1.5*sin(2*t/9)"))
-        self.rejected("six-arms-over-radio", "bounded-delays", "below the latency", lambda entry: entry["proof"]["given"][0].update(worst_s="0.01"))
+        # Below the latency, and an age as large as half of the run, which is bounded by that alone.
+        for age in ("0.01", "30.1"):
+            older = lambda entry: entry["proof"]["given"][0].update(worst_s=age) or entry["proof"].update(bound_s="60")  # noqa: B023, E731
+            self.rejected("six-arms-over-radio", "bounded-delays", "out of range", older)
         self.rejected("six-arms-over-radio", "bounded-delays", "lacks the link", lambda entry: entry["proof"]["given"].pop())
         self.rejected("six-arms-over-radio", "bounded-delays", "more than the proof shows", lambda entry: entry.update(answer="holds"))
 
@@ -1170,6 +1175,14 @@ class FalseProofs(unittest.TestCase):
                 self.assertTrue(checker.everywhere(tree), text)
             else:
                 self.assertRaises(checker.Undecided, checker.everywhere, tree)
+        # Backstepping takes derivatives, which powers bear up to their exponents.
+        for text, taken, fine in (("(x1^2)^1.25", 1, True), ("(x1^2)^1.25", 3, None), ("(x1^2)^2.5", 2, True), ("(x1^2)^2.5", 3, None),
+                                  ("sin((x1^2)^1.5)", 2, None), ("(1 + x1^2)^0.25", 3, True), ("x1^3", 9, True)):
+            tree = checker.formula(text, checker.STATES)
+            if fine:
+                self.assertTrue(checker.everywhere(tree, taken), text)
+            else:
+                self.assertRaises(checker.Undecided, checker.everywhere, tree, taken)
 
     def test_what_the_text_says(self):
         limits = ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 5\n[network]")

@@ -132,7 +132,7 @@ pub(crate) struct SamplingLimitOptions {
     /// Take velocities from differences of positions, filtered at this cut-off
     #[arg(long, value_name = "HZ", value_parser = positive)]
     pub(crate) filter_hz: Option<f64>,
-    /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period]
+    /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period, or |z| there]
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(crate) peak_error: Option<f64>,
     /// It works if no more than this remains of the disagreement, or of the error, in rad or m [default: a tenth of what there is at

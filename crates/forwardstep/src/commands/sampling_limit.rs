@@ -100,10 +100,11 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
             format!("  rule       {} ms: linearised at the start, a fast mode stops to decay", ms(Some(period_s)))
         }
     });
+    let bounded =
+        if found.peak_error.is_finite() { format!("|s| ≤ {:.3}, and ", found.peak_error) } else { String::new() };
     console.line(format_args!(
-        "  measured   {} ms: |s| ≤ {:.3}, and at most {:.2e} remains at the end; {} runs",
+        "  measured   {} ms: {bounded}at most {:.2e} remains at the end; {} runs",
         ms(found.measured_s),
-        found.peak_error,
         found.remains,
         found.trials.len()
     ));

@@ -58,7 +58,7 @@ pub struct Trial {
     pub period_s: f64,
     /// Its largest |s|; not finite where the run did not complete.
     pub peak_error: f64,
-    /// Its largest |z|, where there is a z that s is measured from.
+    /// Its largest |z|; infinite where there is none.
     pub peak_reference: f64,
     /// Its final disagreement or error; likewise.
     pub remains: f64,
@@ -183,7 +183,10 @@ fn trial(setup: &Setup, period_s: f64) -> Result<Trial, SetupError> {
         let columns = outcome.recording.columns.iter().filter(|column| column.signal == signal);
         columns.flat_map(|column| &column.values).fold(0.0_f64, |most, value| most.max(value.abs()))
     };
-    let [peak_error, peak_reference] = [Signal::TrackingError, Signal::Reference(0)].map(peak);
+    let peak_error = peak(Signal::TrackingError);
+    // Where there is no z, s alone tells nothing.
+    let leads = outcome.recording.columns.iter().any(|column| column.signal == Signal::Reference(0));
+    let peak_reference = if leads { peak(Signal::Reference(0)) } else { f64::INFINITY };
     Ok(Trial { period_s, peak_error, peak_reference, remains: last, initial })
 }
 

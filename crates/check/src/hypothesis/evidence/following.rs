@@ -97,8 +97,8 @@ impl FollowingEvidence {
             FollowingEvidence::Gain { gamma, for_ever, .. } if for_ever < gamma => Answer::Holds,
             FollowingEvidence::Gain { .. } => Answer::NotShown,
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
-            FollowingEvidence::GainOverTarget { arrives: true, .. } => Answer::Violated,
-            FollowingEvidence::GainOverTarget { arrives: false, .. } => Answer::NotShown,
+            // It has no witness: it fails once the leader has arrived, which is promised and not shown.
+            FollowingEvidence::GainOverTarget { .. } => Answer::NotShown,
             FollowingEvidence::Sign { choice, period_s, rate_per_s, end_s, .. } => match choice {
                 Choice::Implicit if period_s * rate_per_s > MOST_HELD || period_s >= end_s => Answer::NotCovered,
                 Choice::Implicit => Answer::Holds,

@@ -305,7 +305,9 @@ impl KindEvidence {
             | KindEvidence::BoundedStates { .. }
             | KindEvidence::SingularValue { .. }
             | KindEvidence::Determinant { .. } => Answer::Watched,
-            KindEvidence::Declared { .. }
+            // Where all agree it fails; a start is no witness of that.
+            KindEvidence::FallsFreely { .. }
+            | KindEvidence::Declared { .. }
             | KindEvidence::AttitudeNotShown { .. }
             | KindEvidence::TermNotShown { .. }
             | KindEvidence::TermNotSmooth { .. }
@@ -325,7 +327,6 @@ impl KindEvidence {
             | KindEvidence::SafeCommand
             | KindEvidence::NoSpacecraft => Answer::NotCovered,
             KindEvidence::ParameterOutside { .. }
-            | KindEvidence::FallsFreely { .. }
             | KindEvidence::TermFails { .. }
             | KindEvidence::RankDeficient { .. }
             | KindEvidence::HalfTurn

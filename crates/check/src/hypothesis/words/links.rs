@@ -21,7 +21,7 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
                 let basis = if *basis == Basis::Declared { " (declared, not shown)" } else { "" };
                 return format!("no delay exceeds {bound} s{pieces}{basis}");
             }
-            let short = (2.0 * bound_s > *end_s)
+            let short = (2.0 * oldest_s > *end_s)
                 .then_some("the run is not twice as long, so that nothing is seen to arrive again and again");
             let reasons: Vec<&str> = unknown.iter().copied().map(reason).chain(short).collect();
             format!(
