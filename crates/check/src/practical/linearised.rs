@@ -27,6 +27,9 @@ const SCAN: (f64, u32) = (1.25, 48);
 /// The period is found to this part.
 const TOLERANCE: f64 = 1e-4;
 
+/// How far beside a period of which nothing is found another one is looked at, as a part of it.
+const BESIDE: f64 = 1e-3;
+
 /// The multipliers of the agent for which sampling is worst.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearisedSampling {
@@ -72,7 +75,9 @@ impl LinearisedSampling {
     /// of periods without such a mode that holds `near_s`, or of the next one below it. Infinity where none was found; `None` where there
     /// is nothing to linearise, or a mode grows however short periods are.
     pub fn longest_period_s(near_s: f64, sampled: impl Fn(f64) -> Setup) -> Option<f64> {
-        let radius = |period_s: f64| LinearisedSampling::of(&sampled(period_s)).map(|found| found.radius);
+        let found = |period_s: f64| LinearisedSampling::of(&sampled(period_s)).map(|found| found.radius);
+        // At single periods eigenvalues are not found; close by they are.
+        let radius = |period_s: f64| found(period_s).or_else(|| found((1.0 + BESIDE) * period_s));
         radius(near_s)?;
         // Where nothing finite is found no mode decays.
         let decays = |period_s: f64| radius(period_s).is_some_and(|radius| radius < 1.0);

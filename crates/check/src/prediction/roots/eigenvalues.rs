@@ -12,19 +12,14 @@ const SMALL: [f64; 3] = [1e-14, 1e-13, 1e-12];
 /// All eigenvalues of `matrix`; `None` when they do not converge, or an entry is not finite.
 ///
 /// The QR algorithm has no exceptional shifts and stalls on a matrix that permutes, as that of a ring does: it is given a
-/// mirror image, which has the same eigenvalues and no structure. Where all lie close to each other, as those of a short period
-/// do to 1, it may stall as well: then they are those of what is left without their mean.
+/// mirror image, which has the same eigenvalues and no structure.
 pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<C>> {
-    let n = matrix.nrows();
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
-    let mean = matrix.trace() / n.max(1) as f64;
-    let attempts = [0.0, mean].into_iter().flat_map(|shift| SMALL.iter().map(move |small| (shift, *small)));
-    attempts.enumerate().find_map(|(attempt, (shift, small))| {
-        let mirrored = mirrored(&(matrix - DMatrix::from_diagonal_element(n, n, shift)), attempt + 1);
-        let schur = Schur::try_new(mirrored, small, MOST_STEPS)?;
-        Some(schur.complex_eigenvalues().iter().map(|mu| mu + shift).collect())
+    SMALL.iter().enumerate().find_map(|(attempt, small)| {
+        let mirrored = mirrored(matrix, attempt + 1);
+        Some(Schur::try_new(mirrored, *small, MOST_STEPS)?.complex_eigenvalues().iter().copied().collect())
     })
 }
 
