@@ -47,6 +47,8 @@
 use forwardstep_sim::{Control, VelocitySensor};
 use nalgebra::DMatrix;
 
+use crate::prediction::roots::eigenvalues::eigenvalues;
+
 /// How a command reaches its robot, besides being held for a period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold {
@@ -94,8 +96,8 @@ impl Hold {
         self.delay_s / period_s + filter
     }
 
-    /// The largest multiplier of a period by its size, with Y frozen: of M⁻¹ K and of M⁻¹ P.
-    pub(super) fn radius(self, period_s: f64, damping: &DMatrix<f64>, learning: &DMatrix<f64>) -> f64 {
+    /// The largest multiplier of a period by its size, with Y frozen: of M⁻¹ K and of M⁻¹ P; `None` where it is not found.
+    pub(super) fn radius(self, period_s: f64, damping: &DMatrix<f64>, learning: &DMatrix<f64>) -> Option<f64> {
         let (late, h, m) = (self.delay_s / period_s, period_s, damping.nrows());
         let early = 1.0 - late;
         // A row of the state (s, f, w, u⁻) for every quantity; h M⁻¹ is taken into w and u.
@@ -117,7 +119,7 @@ impl Hold {
         for (at, rows) in [&next, &next_f, &next_w, &u].into_iter().enumerate() {
             all.rows_mut(at * m, m).copy_from(rows);
         }
-        all.complex_eigenvalues().iter().map(|root| root.norm()).fold(0.0, f64::max)
+        Some(eigenvalues(&all)?.iter().map(|root| root.norm()).fold(0.0, f64::max))
     }
 }
 
@@ -182,6 +184,8 @@ fn first_root(c: f64, b: f64, a: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
+
+    use crate::prediction::roots::eigenvalues::eigenvalues;
 
     use super::*;
 

@@ -124,7 +124,8 @@ impl Rates {
         let Some((Learning { p, .. }, factor)) = self.learning.as_ref().zip(self.mass.clone().cholesky()) else {
             return false;
         };
-        hold.radius(period_s, &factor.solve(&self.damping), &factor.solve(p)) > 1.0 + ROUNDING
+        let radius = hold.radius(period_s, &factor.solve(&self.damping), &factor.solve(p));
+        radius.is_some_and(|radius| radius > 1.0 + ROUNDING)
     }
 
     /// ½ h λ_max(M⁻¹ (K + ½ h P)); `None` where nothing adapts. Above 1 damping and adaptation together are unstable where Y stays.
@@ -257,7 +258,8 @@ mod tests {
     /// The largest multiplier of `held` for these.
     fn radius(rates: &Rates, hold: Hold, period_s: f64) -> f64 {
         let factor = rates.mass.clone().cholesky().unwrap();
-        hold.radius(period_s, &factor.solve(&rates.damping), &factor.solve(&rates.learning.as_ref().unwrap().p))
+        let learning = factor.solve(&rates.learning.as_ref().unwrap().p);
+        hold.radius(period_s, &factor.solve(&rates.damping), &learning).unwrap()
     }
 
     fn any_hold(late: f64, cut_off: f64, period_s: f64) -> Hold {

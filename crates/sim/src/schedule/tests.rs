@@ -36,7 +36,9 @@ fn longest_run_s(schedule: &Schedule, agents: usize, end_s: f64) -> f64 {
             rooted.then(|| segments[last].end_s - segments[first].start_s)
         })
     };
-    (0..segments.len()).map_while(run_s).fold(0.0, f64::max)
+    // What the end cuts off was needed as well.
+    let needed_s = |first: usize| run_s(first).unwrap_or(end_s - segments[first].start_s);
+    (0..segments.len()).map(needed_s).fold(0.0, f64::max)
 }
 
 #[test]
