@@ -144,7 +144,7 @@ fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
         assert!((1e3 * found.period_s / rule - 1.0).abs() < 0.005, "{row:?}: {found:?}");
         assert!((rule / measured - ratio).abs() < 0.01 && ratio < 1.07, "{row:?}");
         // Where friction is learnt the margin is far on the safe side.
-        assert!(ratio > 0.8 || (ratio > 0.39 && name == "six-arms-with-friction") || found.linearised, "{row:?}");
+        assert!(ratio > 0.7 || (ratio > 0.39 && name == "six-arms-with-friction") || found.linearised, "{row:?}");
         // What is said of that very deployment there.
         let at = |share: f64| deployment.apply(&setup, share * found.period_s);
         if found.linearised {
