@@ -1176,8 +1176,7 @@ def along(claim, windows, longest_s, given=None):
     sequence = drawn(scenario, given) if given else scenario.logged
     t, ends = [Fraction(0), *(end for *_, end in sequence)], tiled(claim, windows, [int(phase) - 1 for phase, *_ in sequence])
     # How long they are, and how long one waits for the phase that completes a window, or in vain.
-    spans = [[t[b] - t[a], t[b - 1] - t[a]] for a, b in zip(ends, ends[1:])] + [[scenario.end_s - t[ends[-1]]] * 2]
-    longest, wait = map(max, zip(*spans))
+    longest, wait = map(max, zip(*([t[b] - t[a], t[b - 1] - t[a]] for a, b in zip(ends, ends[1:])), [scenario.end_s - t[ends[-1]]] * 2))
     require(longest_s, longest <= longest_s.number() and 2 * wait <= scenario.end_s, "is exceeded, or one waits for half of the run")
     return False
 
@@ -1372,13 +1371,14 @@ def frictions(scenario):
 # and a central inertia ≻ 0, with all that is fixed to it: 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and these bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|,
 # or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
 def solid(scenario, agent):
-    found = links(scenario, agent)
+    slides, axis, *_, end = (found := links(scenario, agent))[-1]
     possible = all(mass >= 0 and min(inertia) >= 0 and len(inertia) == 3 for *_, bodies in found for mass, inertia, _ in bodies)
     whole = all(any(mass > 0 and min(inertia) > 0 for mass, inertia, _ in bodies) for *_, bodies in found)
     felt = all(any(mass > 0 if slides else min(inertia) > 0 for mass, inertia, _ in bodies)
                or bodies[0][0] > 0 and not parallel(axis, bodies[0][2]) for slides, axis, *_, bodies in found)
-    # A link at an end that is nothing moves without effort.
-    moves = all(mass >= 0 for *_, bodies in found for mass, *_ in bodies) and any(mass or any(own) for mass, own, _ in found[-1][-1])
+    # A link at an end that is nothing, or a point on the axis that it turns about, moves without effort.
+    moves = all(mass >= 0 for *_, bodies in found for mass, *_ in bodies) and any(
+        any(own) or mass and (slides or k > 0 or not parallel(axis, centre)) for k, (mass, own, centre) in enumerate(end))
     return moves and not decided(possible and (whole or felt and not swung(found)), "a link of a URDF may have no inertia of its own")
 
 # Whether the travel of a joint that slides enters velocities: where one above it turns about another direction. About its own, what

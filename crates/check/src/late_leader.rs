@@ -8,8 +8,9 @@
 //! The sign is held for a period of δ, in continuous time as well as by controllers that sample: what it makes of a message at the end of the
 //! period is as old as the message was at its beginning, T_ij + δ, and between two such ends ξ_i moves along a straight line, which adds
 //! ½ δ D to what ξ_0 moves meanwhile. So T_ij + 1½ δ stands for T_ij throughout. Controllers that sample hear up to a period later
-//! besides, and once more where what is told was held. With a path of n agents that is n δ D and not δ D, however short the delays are. Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on
-//! rounding.
+//! besides, and once more where what is told was held. With a path of n agents that is n δ D and not δ D, however short the delays are.
+//!
+//! Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on rounding.
 
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
 use forwardstep_sim::leader::Following;

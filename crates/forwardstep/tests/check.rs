@@ -132,6 +132,7 @@ fn rows() -> Vec<Vec<String>> {
 #[test]
 fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
     let rows = rows();
+    assert_eq!(rows.len(), 23);
     for row in &rows {
         let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
         let deployment = Deployment {
@@ -142,9 +143,13 @@ fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
         let found = deployment.rule(&setup).unwrap();
         let [rule, measured, ratio] = [rule, measured, ratio].map(|cell| cell.parse::<f64>().unwrap());
         assert!((1e3 * found.period_s / rule - 1.0).abs() < 0.005, "{row:?}: {found:?}");
-        assert!((rule / measured - ratio).abs() < 0.01 && ratio < 1.07, "{row:?}");
-        // Where friction is learnt the margin is far on the safe side.
-        assert!(ratio > 0.7 || (ratio > 0.39 && name == "six-arms-with-friction") || found.linearised, "{row:?}");
+        // What is learnt under way, of friction above all, is far on the safe side.
+        let least = match &name[..] {
+            "six-arms-with-friction" => 0.39,
+            "five-ships" => 0.74,
+            _ => 0.8,
+        };
+        assert!((rule / measured - ratio).abs() < 0.01 && ratio > least && ratio < 1.07, "{row:?}");
         // What is said of that very deployment there.
         let at = |share: f64| deployment.apply(&setup, share * found.period_s);
         if found.linearised {
@@ -175,6 +180,16 @@ fn regress_ships_that_sample_too_slowly_for_their_way_are_not_called_adequate() 
     assert!(said.contains("not shown: they sample fast enough for K and Γ"), "{said}");
     assert!(said.contains(" on the way that its reference leads (ship-"), "{said}");
     forwardstep(&folder, &["run", "ships.toml", "--out", "run"]).code(3);
+}
+
+/// All multipliers of a short period are close to one, on which the search of eigenvalues may stall.
+#[test]
+fn regress_short_periods_have_their_multipliers() {
+    for hz in (600..680).chain([800, 1024, 5000, 20_000]) {
+        let setup = open_scenario("theorem-7").unwrap().setup.sampled(f64::from(hz));
+        let found = LinearisedSampling::of(&setup).unwrap_or_else(|| panic!("{hz} Hz"));
+        assert!(found.leftmost > 0.99 && found.radius == 0.0, "{hz} Hz: {found:?}");
+    }
 }
 
 #[test]

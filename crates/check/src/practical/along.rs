@@ -173,9 +173,7 @@ fn rates(setup: &Setup, columns: &Columns<'_>, agent: usize, gains: &Gains, row:
     let (q, dq) = (signal(Signal::Position)?, signal(Signal::Velocity)?);
     let (z, dz) = (signal(Signal::Reference(0))?, signal(Signal::Reference(1))?);
     let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
-    let dynamics = robot.kind.lagrangian()?.dynamics_at(&robot.theta, motion).ok()?;
-    let finite = dynamics.mass.iter().chain(&dynamics.regressor).all(|entry| entry.is_finite());
-    if finite { gains.rates(&dynamics) } else { None }
+    gains.rates(&robot.kind.lagrangian()?.dynamics_at(&robot.theta, motion).ok()?)
 }
 
 /// The static torque of an agent at one row.

@@ -185,8 +185,6 @@ fn first_root(c: f64, b: f64, a: f64) -> f64 {
 mod tests {
     use nalgebra::DMatrix;
 
-    use crate::prediction::roots::eigenvalues::eigenvalues;
-
     use super::*;
 
     fn radius(matrix: &DMatrix<f64>) -> f64 {

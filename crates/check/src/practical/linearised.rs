@@ -27,9 +27,6 @@ const SCAN: (f64, u32) = (1.25, 48);
 /// The period is found to this part.
 const TOLERANCE: f64 = 1e-4;
 
-/// How far beside a period of which nothing is found another one is looked at, as a part of it.
-const BESIDE: f64 = 1e-3;
-
 /// The multipliers of the agent for which sampling is worst.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearisedSampling {
@@ -75,9 +72,7 @@ impl LinearisedSampling {
     /// of periods without such a mode that holds `near_s`, or of the next one below it. Infinity where none was found; `None` where there
     /// is nothing to linearise, or a mode grows however short periods are.
     pub fn longest_period_s(near_s: f64, sampled: impl Fn(f64) -> Setup) -> Option<f64> {
-        let found = |period_s: f64| LinearisedSampling::of(&sampled(period_s)).map(|found| found.radius);
-        // At single periods eigenvalues are not found; close by they are.
-        let radius = |period_s: f64| found(period_s).or_else(|| found((1.0 + BESIDE) * period_s));
+        let radius = |period_s: f64| LinearisedSampling::of(&sampled(period_s)).map(|found| found.radius);
         radius(near_s)?;
         // Where nothing finite is found no mode decays.
         let decays = |period_s: f64| radius(period_s).is_some_and(|radius| radius < 1.0);
@@ -121,7 +116,10 @@ impl LinearisedSampling {
 /// The largest size of a fast multiplier, and the smallest real part of those that are not zero.
 fn multipliers(setup: &Setup, agent: usize) -> Option<(f64, f64)> {
     let jacobian = sampled_jacobian(setup, agent).ok()??;
-    let all = eigenvalues(&DMatrix::from_row_slice(jacobian.size, jacobian.size, &jacobian.entries))?;
+    let n = jacobian.size;
+    // J is close to 1 with all its eigenvalues when a period is short, and the QR algorithm then stalls on it, but not on what is left.
+    let away = eigenvalues(&(DMatrix::from_row_slice(n, n, &jacobian.entries) - DMatrix::identity(n, n)))?;
+    let all: Vec<_> = away.into_iter().map(|mu| mu + 1.0).collect();
     let kept = || all.iter().filter(|mu| mu.norm() > FORGOTTEN);
     let fast = kept().filter(|mu| (*mu - 1.0).norm() > FAST);
     let radius = fast.map(|mu| mu.norm()).fold(0.0, f64::max);

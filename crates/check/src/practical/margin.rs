@@ -160,8 +160,7 @@ fn looked(setup: &Setup) -> Vec<Looked> {
     });
     for Led { agent, t_s, q, dq, dz } in states(setup, &those) {
         let dz: Vec<f64> = dz.iter().map(|dz| dz + sign(setup, agent).copysign(*dz)).collect();
-        let dynamics = dynamics(&setup.agents[agent], &q, &dq, &dz);
-        look(agent, dynamics.filter(is_finite), At::Led { t_s });
+        look(agent, dynamics(&setup.agents[agent], &q, &dq, &dz), At::Led { t_s });
     }
     found
 }
@@ -181,11 +180,6 @@ fn longest(looked: &[Looked], near_s: f64, hold: &impl Fn(f64) -> Hold, at_most:
 /// How far the sign lets ż of an agent jump where a leader is followed.
 fn sign(setup: &Setup, agent: usize) -> f64 {
     setup.following().filter(|_| !setup.tracks(agent)).map_or(0.0, |following| following.gain)
-}
-
-/// Numbers that are all there.
-fn is_finite(dynamics: &DynamicsAt) -> bool {
-    dynamics.mass.iter().chain(&dynamics.regressor).all(|entry| entry.is_finite())
 }
 
 /// M and Y of an agent at `q`: with z = q̇, which is zero but at the start, and ż as large as the sign makes it where a leader is followed.

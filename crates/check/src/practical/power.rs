@@ -73,14 +73,14 @@ pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f6
 }
 
 impl PowerBound {
-    /// Over the whole run of a setup with its sampling margin; `None` where there is nothing that feeds V but its start, or where V(0), a push or σ is not known
-    /// before the run.
+    /// Over the whole run of a setup with its sampling margin; `None` where there is nothing that feeds V but its start, or where V(0), a
+    /// push or σ is not known before the run.
     pub fn of(setup: &Setup, margin: Option<&SamplingMargin>) -> Option<PowerBound> {
         if !is_fed(setup) {
             return None;
         }
-        let (mut start_j, mut push_w, mut noise_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0.0, 0);
-        let mut steps_w = 0.0;
+        let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
+        let (mut noise_w, mut steps_w) = (0.0, 0.0);
         let span_s = setup.time.end_s;
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;

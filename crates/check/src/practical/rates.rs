@@ -90,8 +90,11 @@ impl Gains {
         Gains { adaptation: None, ..self }
     }
 
-    /// Their rates where M, Y and ϑ are those of `dynamics`; `None` where M cannot be factored.
+    /// Their rates where M, Y and ϑ are those of `dynamics`; `None` where something is not finite, or M cannot be factored.
     pub(crate) fn rates(&self, dynamics: &DynamicsAt) -> Option<Rates> {
+        if dynamics.mass.iter().chain(&dynamics.regressor).any(|entry| !entry.is_finite()) {
+            return None;
+        }
         let m = self.damping.nrows();
         let mass = DMatrix::from_row_slice(m, m, &dynamics.mass);
         let damping_per_s = largest(&mass, &self.damping)?;

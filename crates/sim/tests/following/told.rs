@@ -36,17 +36,13 @@ fn no_robot_enters(mut problem: Setup) {
     }
 }
 
-/// Against `validation/observer`, which integrates the errors of the proof.
-#[test]
-fn val_an_observer_agrees_with_an_independent_solver() {
-    let truths: serde_json::Value =
-        serde_json::from_str(include_str!("../../../../validation/observer/observer.json")).unwrap();
-    let mut setup = masses(FollowingDesign::Observer { kappa: 1.5 });
+/// Three masses that estimate theirs behind 0.6 sin(0.8 t + 0.3), as `validation` starts them.
+fn behind_a_wave(design: FollowingDesign) -> Setup {
+    let mut setup = masses(design);
     let waves = vec![Sinusoid { amplitude: 0.6, rad_per_s: 0.8, phase_rad: 0.3 }];
     let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.0, waves }]).unwrap();
     assert!(setup.change_reference(|following: &mut Following| {
         following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
-        (following.alpha, following.gain, following.choice) = (1.2, 2.0, Choice::Layer { width: 0.05 });
     }));
     for (k, agent) in setup.agents.iter_mut().enumerate() {
         agent.robot.theta = vec![[0.8, 1.5, 2.3][k]];
@@ -57,8 +53,20 @@ fn val_an_observer_agrees_with_an_independent_solver() {
             bounds: None,
         });
         (agent.start.q, agent.start.dq) = (vec![[0.9, -0.7, 0.4][k]], vec![[0.1, -0.3, 0.2][k]]);
-        agent.start.reference = vec![vec![0.0]];
     }
+    setup
+}
+
+/// Against `validation/observer`, which integrates the errors of the proof.
+#[test]
+fn val_an_observer_agrees_with_an_independent_solver() {
+    let truths: serde_json::Value =
+        serde_json::from_str(include_str!("../../../../validation/observer/observer.json")).unwrap();
+    let mut setup = behind_a_wave(FollowingDesign::Observer { kappa: 1.5 });
+    assert!(setup.change_reference(|following: &mut Following| {
+        (following.alpha, following.gain, following.choice) = (1.2, 2.0, Choice::Layer { width: 0.05 });
+    }));
+    setup.agents.iter_mut().for_each(|agent| agent.start.reference = vec![vec![0.0]]);
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let edges = vec![edge(0, 3, 1.4), edge(1, 0, 0.9), edge(1, 2, 0.5), edge(2, 1, 1.1)];
     setup.network.schedule = Schedule::fixed(edges);
@@ -87,22 +95,7 @@ fn val_an_observer_agrees_with_an_independent_solver() {
 #[test]
 fn val_one_vector_agrees_with_an_independent_solver() {
     let truths = truth::read(include_str!("../../../../validation/composite/composite.json"));
-    let mut setup = masses(COMPOSITE);
-    let waves = vec![Sinusoid { amplitude: 0.6, rad_per_s: 0.8, phase_rad: 0.3 }];
-    let trajectory = Trajectory::new(vec![Path::Sinusoids { offset: 0.0, waves }]).unwrap();
-    assert!(setup.change_reference(|following: &mut Following| {
-        following.leader = Leading::Motion(Leader { name: "leader".into(), trajectory });
-    }));
-    for (k, agent) in setup.agents.iter_mut().enumerate() {
-        agent.robot.theta = vec![[0.8, 1.5, 2.3][k]];
-        agent.law = Arc::new(Adaptive {
-            damping: Gain::Number(3.0),
-            adaptation: Gain::Number(2.0),
-            estimate_start: vec![0.2],
-            bounds: None,
-        });
-        (agent.start.q, agent.start.dq) = (vec![[0.9, -0.7, 0.4][k]], vec![[0.1, -0.3, 0.2][k]]);
-    }
+    let mut setup = behind_a_wave(COMPOSITE);
     let edge = |to, from, weight: f64| Edge { from, to, weight: weight.into(), delay: 0 };
     let one_way = vec![edge(0, 3, 1.4), edge(1, 0, 0.9), edge(1, 2, 0.5), edge(2, 1, 1.1)];
     let other = vec![edge(2, 3, 0.8), edge(0, 2, 1.6), edge(1, 0, 0.4)];
