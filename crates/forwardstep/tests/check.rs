@@ -1,6 +1,7 @@
 //! `forwardstep check`: exit statuses, waivers, and the document for programs.
 
 mod derivation;
+mod many;
 mod narrow;
 mod protocols;
 mod smoothness;

@@ -61,7 +61,9 @@ pub use setup::{
     ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RecordAt,
     RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{recorded_columns, simulate, simulate_into, simulate_moments, simulate_samples, simulate_told};
+pub use simulate::{
+    check_recording, recorded_columns, simulate, simulate_into, simulate_moments, simulate_samples, simulate_told,
+};
 pub use system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
     RobotInterface,

@@ -221,9 +221,17 @@ fn broken(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, failure
 /// The columns that a run of `setup` records, without any rows: what its tables are read back into.
 ///
 /// # Errors
-/// [`SetupError`] when the setup has no meaning.
+/// [`SetupError`] when the setup has no meaning. That its rows fit into memory is what [`check_recording`] says.
 pub fn recorded_columns(setup: &Setup) -> Result<Vec<Column>, SetupError> {
-    Ok(empty_columns(&assembled(setup)?, setup.agents.len()).0)
+    Ok(empty_columns(&ClosedLoop::new(setup)?, setup.agents.len()).0)
+}
+
+/// Whether the rows of a run fit into memory, before anything is computed.
+///
+/// # Errors
+/// [`SetupError::RecordingTooLarge`], or what else is wrong with the setup.
+pub fn check_recording(setup: &Setup) -> Result<(), SetupError> {
+    assembled(setup).map(drop)
 }
 
 /// The closed loop, once it is known that its recording fits into memory.

@@ -20,7 +20,7 @@ use super::unfinished::{Unfinished, completed, simulated};
 /// How agreement comes about when every agent follows its reference exactly, s ≡ 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// Time of every row, s: those of a run of the robots.
+    /// Time of every row, s: those of a run of the robots, or a quarter of what fits into memory where a run's do not.
     pub t_s: Vec<f64>,
     /// max |q_i − q_j| over agents and axes, row by row; rad or m.
     pub disagreement: Vec<f64>,

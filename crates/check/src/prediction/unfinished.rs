@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::{Ending, Outcome, Progress, Recording, Setup, SetupError, simulate, simulate_told};
+use forwardstep_sim::{Ending, Outcome, Progress, Recording, Setup, SetupError, TimeSpan, simulate, simulate_told};
 use thiserror::Error;
 
 /// Why the reference dynamics alone were not simulated to the end.
@@ -64,11 +64,20 @@ pub(super) fn simulated(
         reached_s = progress.t_s;
         if *work < 0.0 { ControlFlow::Break(()) } else { observer(progress) }
     };
-    let outcome = match before {
-        Some(before) => simulate_told(ideal, before, &mut counting)?,
-        None => simulate(ideal, &mut counting)?,
+    let mut run = |ideal: &Setup| match before {
+        Some(before) => simulate_told(ideal, before, &mut counting),
+        None => simulate(ideal, &mut counting),
     };
+    let outcome = match run(ideal) {
+        Err(SetupError::RecordingTooLarge { least_s: Some(least_s), .. }) => run(&fewer_rows(ideal, least_s)),
+        outcome => outcome,
+    }?;
     Ok((outcome, reached_s))
+}
+
+/// A quarter of the rows that would fit into memory, where those that were asked for do not.
+fn fewer_rows(ideal: &Setup, least_s: f64) -> Setup {
+    Setup { time: TimeSpan { record_every_s: 4.0 * least_s, ..ideal.time.clone() }, ..ideal.clone() }
 }
 
 /// What a step takes, in nanoseconds, roughly: itself, seven evaluations of all states and of all that is heard, and the pieces of a delay among which

@@ -62,6 +62,19 @@ fn disagreement(outcome: &Outcome, agents: usize, axes: usize) -> Vec<f64> {
 }
 
 #[test]
+fn regress_what_a_run_could_not_record_is_predicted_with_fewer_rows() {
+    let mut setup = arms(Exchange::Position, 1);
+    setup.time.end_s = 20.0;
+    let usual = predicted(&setup);
+    setup.time.record_every_s = 1e-6;
+    assert!(forwardstep_sim::check_recording(&setup).is_err());
+    let fewer = predicted(&setup);
+    assert!((1e4..2e6).contains(&(fewer.t_s.len() as f64)), "{} rows", fewer.t_s.len());
+    let (at, usual) = (fewer.settled.time_s().unwrap(), usual.settled.time_s().unwrap());
+    assert!((at - usual).abs() < 1e-3 * usual, "{at} and {usual}");
+}
+
+#[test]
 fn who_follows_exactly_never_has_a_tracking_error() {
     for exchange in [Exchange::Position, Exchange::PositionVelocity] {
         for order in 1..=4 {

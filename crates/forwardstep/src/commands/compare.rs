@@ -119,6 +119,7 @@ fn read(earlier: &[String], text: &str, kinds: &Kinds) -> Result<Given, Status> 
         return Ok(Given::Run(path.to_owned()));
     }
     let scenario = kinds.open_scenario(text).map_err(|error| complain(&error))?;
+    scenario.check_recording().map_err(|error| complain(&error))?;
     Ok(Given::Scenario(Box::new(scenario)))
 }
 

@@ -50,6 +50,7 @@ fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Statu
     let digital = scenario.setup.control.is_some();
     let twin = digital.then(|| continuous_twin(&scenario.setup, scenario.setup.time.end_s));
     let setup = twin.as_ref().unwrap_or(&scenario.setup);
+    scenario.check_recording().map_err(|error| complain(&error))?;
     let refused = |error| complain(&Plain::new(error));
     let mut residuals = Residuals::of(setup).map_err(refused)?;
     let (stop, mut bar) = (Stop::listen(), Bar::new());

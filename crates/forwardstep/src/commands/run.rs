@@ -36,6 +36,7 @@ pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) ->
 
 fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
+    scenario.check_recording().map_err(|error| complain(&error))?;
     let promise = promise(&scenario.setup);
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.

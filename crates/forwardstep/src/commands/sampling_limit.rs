@@ -37,6 +37,7 @@ fn finish(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) 
     }
     for name in &options.scenarios {
         let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
+        scenario.check_recording().map_err(|error| complain(&error))?;
         let deployments = deployments(options, &scenario);
         for deployment in &deployments {
             let accepted = Accepted { peak_error: options.peak_error, remains: options.disagreement };

@@ -90,7 +90,7 @@ use std::fmt;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    ATOL, Method, Network, RECORD_EVERY_S, RTOL, RecordAt, Setup, Solver, TimeSpan, recorded_columns,
+    ATOL, Method, Network, RECORD_EVERY_S, RTOL, RecordAt, Setup, Solver, TimeSpan, check_recording, recorded_columns,
 };
 use miette::Diagnostic;
 
@@ -144,6 +144,21 @@ pub struct Scenario {
     pub inputs: Vec<InputFile>,
     /// What each agent looks like, if it is from a URDF.
     pub models: Vec<Option<Model>>,
+}
+
+impl Scenario {
+    /// Whether the rows of a run fit into memory. Reading does not ask: a check, an explanation or a prediction of many agents
+    /// records none.
+    ///
+    /// # Errors
+    /// That they do not, at the key that says how often rows are recorded, with what to write there.
+    pub fn check_recording(&self) -> Result<(), ScenarioError> {
+        check_recording(&self.setup).map_err(|error| match Document::parse(&self.source) {
+            // It is about the run as a whole, so that no agent's entry is looked for.
+            Ok(document) => Stop::Here(document.refused(&self.setup, &[], error)).in_file(&self.source),
+            Err(fault) => Stop::Here(fault).in_file(&self.source),
+        })
+    }
 }
 
 /// A mistake in a scenario, or in a file that it names.

@@ -62,8 +62,6 @@ pub(super) const CASES: &[Case] = &[
         "test.toml:5:9: `end_s` is -3.5, but must be positive", ""),
     ("record_every_s = 0.1", "record_every_s = 0",
         "test.toml:6:18: `record_every_s` is 0, but must be positive", ""),
-    ("record_every_s = 0.1", "record_every_s = 1e-9",
-        "test.toml:6:18: the recording would hold 5.3e11 numbers, 1e10 rows of 53 columns, but at most 1e8 fit", "for this `end_s` let `record_every_s` be at least 5.6e-6"),
     // Agents.
     ("name = \"cart\"", "name = \"arm-2\"",
         "test.toml:15:8: a second agent is named `arm-2`; the first is on line 9", "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"),
@@ -373,6 +371,22 @@ fn printed(text: &str) -> String {
         .render_report(&mut shown, &error)
         .unwrap();
     shown
+}
+
+#[test]
+fn regress_what_a_run_would_record_is_asked_of_runs_alone() {
+    let refused = |text: &str| {
+        let error = read(text).unwrap().check_recording().unwrap_err();
+        (error.to_string(), error.help().unwrap().to_string())
+    };
+    let (said, help) = refused(&changed("record_every_s = 0.1", "record_every_s = 1e-9"));
+    let numbers = "the recording would hold 5.3e11 numbers, 1e10 rows of 53 columns, but at most 1e8 fit";
+    assert_eq!(said, format!("test.toml:6:18: {numbers}"));
+    assert_eq!(help, "for this `end_s` let `record_every_s` be at least 5.6e-6");
+    // Where nothing says how often rows are recorded, it is the end of the run that asks for too much.
+    let (said, _) = refused(&changed("end_s = 10\nrecord_every_s = 0.1\n", "end_s = 1e6\n"));
+    assert!(said.starts_with("test.toml:5:9: the recording would hold"), "{said}");
+    read(SOUND).unwrap().check_recording().unwrap();
 }
 
 #[test]
