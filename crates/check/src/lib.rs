@@ -7,7 +7,7 @@
 //! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.
 
 mod agreement;
-mod breaks;
+mod footing;
 pub mod certificate;
 mod conserved;
 pub mod derivation;
@@ -35,7 +35,7 @@ mod theorem;
 mod theorems;
 
 pub use agreement::{NoPrediction, Prediction, predict};
-pub use breaks::{Break, breaks};
+pub use footing::{Footing, Ground};
 pub use certificate::certify;
 pub use fixed::NotFixed;
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod agreement;
-mod breaks;
+mod footing;
 mod common;
 mod hypotheses;
 mod identities;

@@ -13,7 +13,7 @@ use crate::support::assert_report_is_rebuilt;
 use example::Anchored;
 use forwardstep::check::derivation::explain;
 use forwardstep::check::derivation::residual::{Missing, Residuals};
-use forwardstep::check::{Answer, Id, Report, Rigour, Theorem, check, predict};
+use forwardstep::check::{Answer, Footing, Id, Report, Rigour, Theorem, check, predict};
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{TextLine, explanation_lines};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
@@ -69,7 +69,7 @@ fn their_linear_form_is_explained() {
     let explanation = explain(&setup);
     let design = &explanation.designs[0];
     assert_eq!((design.agents.len(), design.order, design.degrees), (3, Some(3), Some([2, 1])));
-    let lines = explanation_lines(&setup, &explanation, &[]);
+    let lines = explanation_lines(&setup, &explanation, &Footing::default());
     let has = |part: &str| lines.iter().any(|line| matches!(line, TextLine::Formula(text, _) if text.contains(part)));
     // ℓ = 2, α = (2, 3, 1) and the weight 0.7 of a home.
     let own = "z\u{308}_i = −3.7 z\u{307}_i − 4.1 q\u{307}_i − 1.4 q_i − Σ_j w_ij";
@@ -133,7 +133,7 @@ fn a_linear_form_that_is_not_theirs_is_found_out_and_nothing_is_derived_from_it(
     );
     let explanation = explain(&setup);
     assert_eq!((explanation.designs[0].order, explanation.designs[0].degrees), (None, None));
-    let lines = explanation_lines(&setup, &explanation, &[]);
+    let lines = explanation_lines(&setup, &explanation, &Footing::default());
     assert!(lines.iter().all(|line| !matches!(line, TextLine::Formula(..))), "{lines:?}");
     let said = |part: &str| lines.iter().any(|line| matches!(line, TextLine::Words(words) if words.contains(part)));
     assert!(

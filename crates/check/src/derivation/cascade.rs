@@ -82,10 +82,11 @@ impl Upper {
         degree(self.derivatives_of_input(), lower_order)
     }
 
-    /// The same for the distance from a leader or from a target.
-    pub fn relative_to(&self, followed: Quantity) -> Upper {
+    /// The same for the distance from a leader or from a target, as it is now and as it was when what is heard was told.
+    pub fn relative_to(&self, [followed, then]: [Quantity; 2]) -> Upper {
         let one = Polynomial::one();
         let by = |quantity: Quantity| {
+            let followed = if quantity.vertex == Vertex::Neighbour { then } else { followed };
             (quantity.letter == self.state).then(|| {
                 Combination::of(Quantity { letter: Letter::Deviation, ..quantity }, one.clone()).plus(followed, &one)
             })
@@ -114,7 +115,7 @@ impl Upper {
 
     /// Whether a quantity is q of some agent.
     pub(super) fn is_state(&self, quantity: Quantity) -> bool {
-        quantity.letter == self.state && quantity.vertex != Vertex::Leader
+        quantity.letter == self.state && !matches!(quantity.vertex, Vertex::Leader | Vertex::LateLeader)
     }
 }
 

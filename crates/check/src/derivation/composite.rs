@@ -5,7 +5,7 @@ use num_rational::BigRational;
 use super::case::Case;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Quantity, Term};
-use super::formula::Formula;
+use super::formula::{At, Formula};
 use super::lower::Rubbing;
 use super::places::Places;
 use super::polynomial::Polynomial;
@@ -90,11 +90,15 @@ pub(super) fn explained(case: &Case<'_>, composite: &Composite) -> Explained {
         "Since s need not vanish, q_i stays away from the leader by up to the largest s that is left, behind that filter: the derivation does not \
          cover this, and `forwardstep check` says how large s stays."
     } else {
-        "q_i − q_0 is what is left of y and s behind a stable filter, and vanishes with them, as its derivative does."
+        "q_i − q_0 is what is left of y and s behind a stable filter, and falls to what they fall to, as its derivative does."
+    };
+    let reached = match case.heard() {
+        At::Now => "and vanishes in finite time",
+        _ => "until it is as small as the delays let it be, which `forwardstep check` says",
     };
     sections.push(Section::new(Subject::Convergence).words(words::of_s(case)).words(format!(
         "y obeys what (110) makes of robots without s: its largest difference to the leader's falls at a rate of γ less the largest size of what \
-         drives the leader, and vanishes in finite time. {last}"
+         drives the leader, {reached}. {last}"
     )));
     Explained { agents: case.agents.clone(), order: Some(3), degrees: Some([1, 0]), sections }
 }

@@ -10,8 +10,8 @@ use super::case::{Case, ChainStepKind, Led, Step, ThrustStep};
 use super::composite::{self, Composite};
 use super::dynamics::{Dynamics, Measured, Smooth, backstepping, consensus, declared, following, tracking};
 use super::explanation::{Explained, Section, Subject};
-use super::form::{Combination, Form, Letter, Links, Quantity};
-use super::formula::{Formula, Sign, Symbol};
+use super::form::{Combination, Form, Letter, Links, Quantity, Vertex};
+use super::formula::{At, Formula, Sign, Symbol};
 use super::lower::{self, ChainError, Lower, Rubbing};
 use super::notation::Notation;
 use super::observer::{self, Observer};
@@ -24,6 +24,17 @@ use super::{attitude, model_reference, task_space};
 impl Case<'_> {
     /// Explains it.
     pub fn explained(&self) -> Explained {
+        let mut explained = self.undisturbed();
+        let last = explained.sections.pop().map(|section| match words::while_pushed(self) {
+            Some(words) if section.subject == Subject::Convergence => section.words(words),
+            _ => section,
+        });
+        explained.sections.extend(last);
+        explained
+    }
+
+    /// The same, without what acts from outside.
+    fn undisturbed(&self) -> Explained {
         match (&self.led, &self.step) {
             (Led::Outside(name, None), _) => self.silent(&format!(
                 "{name} come from outside and do not say that they are linear, so nothing is derived from them."
@@ -123,8 +134,8 @@ impl Case<'_> {
             Step::Robot { known } => lower::robot(self.outside(), *known, None),
             Step::PositionOnly([k, _]) => lower::position_only(self.outside(), k),
             Step::Thrust(ThrustStep::Continuous, _) | Step::ModelReference(_) | Step::Outside(_) => return None,
-            Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(alpha, Some(k)),
-            Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => lower::thrust(alpha, None),
+            Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(self.outside(), alpha, Some(k)),
+            Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => lower::thrust(self.outside(), alpha, None),
             Step::Attitude(_) => lower::attitude(self.outside()),
             Step::PassivityFilter(k) => lower::passivity_filter(self.outside(), k),
             Step::TaskSpace([kappa, _]) | Step::TipVelocity([kappa, _]) => {
@@ -189,18 +200,23 @@ impl Case<'_> {
         Explained { agents: self.agents.clone(), order, degrees: Some(degrees), sections }
     }
 
+    /// Where the leader is, and where it was when what is heard was told.
+    pub(super) fn leader(&self) -> [Quantity; 2] {
+        let leader = Quantity::of_leader(Letter::Position);
+        let then = if self.heard() == At::Now { Vertex::Leader } else { Vertex::LateLeader };
+        [leader, Quantity { vertex: then, ..leader }]
+    }
+
     /// The upper subsystem, relative to what is followed and behind the filter that stands in for s.
     pub fn upper(&self, dynamics: &Dynamics) -> Upper {
-        let mut upper = dynamics.upper();
+        let (mut upper, target) = (dynamics.upper(), Quantity::own(Letter::Target));
         if !self.alike {
             upper = upper.among_others();
         }
         match (&self.led, &self.step) {
-            (Led::Leader(..), _) => upper.relative_to(Quantity::of_leader(Letter::Position)),
-            (Led::Target, Step::PositionOnly([_, filter])) => {
-                upper.relative_to(Quantity::own(Letter::Target)).filtered(&lag(filter))
-            }
-            _ if self.is_led_to_target() => upper.relative_to(Quantity::own(Letter::Target)),
+            (Led::Leader(..), _) => upper.relative_to(self.leader()),
+            (Led::Target, Step::PositionOnly([_, filter])) => upper.relative_to([target; 2]).filtered(&lag(filter)),
+            _ if self.is_led_to_target() => upper.relative_to([target; 2]),
             (_, Step::PositionOnly([_, filter])) => upper.filtered(&lag(filter)),
             _ => upper,
         }

@@ -29,6 +29,8 @@ pub enum Vertex {
     Neighbour,
     /// The leader, vertex 0.
     Leader,
+    /// The leader at the time of which neighbour j tells: at t − T_ij(t).
+    LateLeader,
 }
 
 /// A signal, or a nonlinear term that stands for itself.

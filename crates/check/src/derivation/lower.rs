@@ -179,17 +179,20 @@ fn vehicle(alpha: &BigRational, velocity: impl Fn(usize) -> Combination) -> Comb
 }
 
 /// (47) under (50) with stiffness k, or under (57).
-pub fn thrust(alpha: &BigRational, stiffness: Option<&BigRational>) -> Lower {
+///
+/// A force f_ext makes m ẍ = … + f_ext, so that (p + α*) f_ext stands beside u* in (47).
+pub fn thrust(outside: Outside, alpha: &BigRational, stiffness: Option<&BigRational>) -> Lower {
+    let acting = outside.acting().times(&Polynomial::factor(alpha));
     let plant = vehicle(alpha, |r| own(Letter::Position, Operator::Mass, r + 1));
     let truth = vehicle(alpha, |r| own(Letter::Reference, Operator::Mass, r));
     match stiffness {
         Some(k) => {
             let law = truth.sum(&minus(&times(&own(Letter::Error, Operator::Identity, 0), k)));
-            lower([plant, law, Combination::default()], Term::Input, None, true, [1, 2])
+            lower([plant, law, acting], Term::Input, None, true, [1, 2])
         }
         None => {
             let estimate = Estimate { letter: Term::MassEstimate, truth, error: Term::MassError };
-            lower([plant, term(Term::MassEstimate), Combination::default()], Term::Input, Some(estimate), false, [1, 2])
+            lower([plant, term(Term::MassEstimate), acting], Term::Input, Some(estimate), false, [1, 2])
         }
     }
 }

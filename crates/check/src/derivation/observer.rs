@@ -5,7 +5,7 @@ use num_rational::BigRational;
 use super::case::Case;
 use super::explanation::{Explained, Section, Subject};
 use super::form::{Combination, Form, Letter, Quantity, Term};
-use super::formula::Formula;
+use super::formula::{At, Formula};
 use super::lower::Rubbing;
 use super::places::Places;
 use super::polynomial::Polynomial;
@@ -91,11 +91,20 @@ pub(super) fn explained(case: &Case<'_>, observer: &Observer) -> Explained {
         "Since s need not vanish, q_i stays away from its estimate by up to the largest s that is left, divided by κ: the derivation does not cover \
          this, and `forwardstep check` says how large s stays."
     } else {
-        "q_i less its estimate is s behind a stable filter, and vanishes with it: q_i − q_0 → 0 with its derivative."
+        match case.heard() {
+            At::Now => {
+                "q_i less its estimate is s behind a stable filter, and vanishes with it: q_i − q_0 → 0 with its derivative."
+            }
+            _ => "q_i less its estimate is s behind a stable filter, and vanishes with it.",
+        }
+    };
+    let reached = match case.heard() {
+        At::Now => "and vanishes in finite time. Then the estimates come to the leader",
+        _ => "until it is as small as the delays let it be, which `forwardstep check` says. Then the estimates come as near to the leader",
     };
     sections.push(Section::new(Subject::Convergence).words(words::of_s(case)).words(format!(
         "The estimates obey what (110) makes of robots without s: the largest difference of ξ̂ to the leader falls at a rate of γ less the largest \
-         size of what drives the leader, and vanishes in finite time. Then the estimates come to the leader, at a rate of α. {last}"
+         size of what drives the leader, {reached}, at a rate of α. {last}"
     )));
     Explained { agents: case.agents.clone(), order: None, degrees: Some([0, 0]), sections }
 }

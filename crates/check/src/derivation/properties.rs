@@ -68,7 +68,7 @@ proptest! {
     fn prop_tracking_reduces_to_its_polynomial_and_terms_in_s_alone(roots in any_roots(), plant in 1..6_usize) {
         prop_assume!(roots.len() >= plant);
         let dynamics = tracking(&Factors::of_real(&roots), Measured::whole(plant)).unwrap();
-        let upper = dynamics.upper().relative_to(Quantity::own(Letter::Target));
+        let upper = dynamics.upper().relative_to([Quantity::own(Letter::Target); 2]);
         prop_assert!(upper.right.quantities().all(|quantity| quantity.letter != Letter::Target), "the target cancels");
         let steps = upper.steps(0);
         let last = steps.last().unwrap();

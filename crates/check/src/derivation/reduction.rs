@@ -116,7 +116,7 @@ impl Upper {
                 let found = self.is_state(quantity).then(|| self.divided_out(quantity.vertex, a.clone(), variables));
                 match (found, quantity.vertex) {
                     (Some(Some(found)), _) => Some(sum.sum(&found)),
-                    (Some(None), Vertex::Own | Vertex::Leader) => None,
+                    (Some(None), Vertex::Own | Vertex::Leader | Vertex::LateLeader) => None,
                     (Some(None), Vertex::Neighbour) | (None, _) => Some(sum.plus(quantity, a)),
                 }
             })

@@ -158,8 +158,8 @@ fn followed(
 ) -> (Option<Section>, Option<Reduced>) {
     let continuous = matches!(case.led, Led::Leader(FollowingDesign::Continuous, _));
     let place = |place| if continuous { place } else { "" };
-    let relative: Vec<Variable> =
-        variables.iter().map(|v| Variable { input: Polynomial::default(), ..v.clone() }).collect();
+    let whole = |v: &Variable| Variable { name: Name::DeltaXi, input: Polynomial::default(), ..v.clone() };
+    let relative: Vec<Variable> = variables.iter().map(whole).collect();
     if continuous && let Some(before) = upper.reduced(relative) {
         section = section
             .words("Relative to the leader, vertex 0, with Δξ_i = ξ_i − ξ_0, the upper subsystem is")
@@ -175,8 +175,9 @@ fn followed(
     let gone: Vec<Form> = reduced.rates.iter().map(|rate| rate.without(upper.input)).collect();
     let gone = Reduced { rates: gone, ..reduced.clone() };
     section = section.words("Once s has vanished this is").system(notation.system(&gone), place("(118)"));
-    if let Some(filter) = dynamics.filter() {
-        let z = Quantity::own(Letter::Reference);
+    // Swarm tracking leaves nothing of z on the right.
+    let z = Quantity::own(Letter::Reference);
+    if let Some(filter) = dynamics.filter().filter(|filter| !filter.own.polynomial(z).is_zero()) {
         section = section
             .words("z is the output of a stable filter:")
             .formula(notation.equation(z, dynamics.order, &filter), places.filter);

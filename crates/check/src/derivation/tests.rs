@@ -172,7 +172,7 @@ fn eq_112_114_115_and_118_for_alpha_3_and_gamma_7() {
     let closed = form(&[(sign, &[-7]), (own(S), &[0, 1])], &network);
     assert_eq!(reduced(&upper, vec![xi.clone()]).rates, std::slice::from_ref(&closed));
     // (114): Δξ̇ = the same − ξ̇₀
-    let relative = upper.relative_to(Quantity::of_leader(Q));
+    let relative = upper.relative_to([Quantity::of_leader(Q); 2]);
     let drive = form(&[(Quantity::of_leader(Q), &[0, -3, -1])], &[]);
     assert_eq!(reduced(&relative, vec![xi]).rates, [closed.sum(&drive)]);
     // (115), with v = Δξ − s: v̇ = −Σ w [(v_i − v_j) + (s_i − s_j)] − 7 ς − ξ̇₀
@@ -197,7 +197,7 @@ fn eq_119_and_122_differentiated_are_one_equation_and_swarms_have_none_of_their_
     let dynamics = smooth.dynamics(Links::Constant).unwrap();
     assert_eq!(dynamics.right, form(&[(own(Q), &[0, -2, -3]), (sign, &[-7])], &network));
     assert_eq!(smooth.dynamics(Links::Varying), Err(Undifferentiable::Links));
-    let upper = dynamics.upper().relative_to(Quantity::of_leader(Q));
+    let upper = dynamics.upper().relative_to([Quantity::of_leader(Q); 2]);
     assert_eq!(upper.degree(1), 2);
     // v = Δξ* − ṡ: v̇ = −Σ w [(v_i − v_j) + (ṡ_i − ṡ_j)] − 7 ς − ξ̇*₀
     let star = || vec![variable(Name::RelativeXiStar, &[2, 3, 1], &[0, 1])];
@@ -241,7 +241,7 @@ fn eq_a9_and_the_cascade_after_remark_7() {
     assert_eq!(a9.right, form(&[(target, &[6, 11, 6, 1]), (own(Z), &[-11, -6]), (own(Q), &[-6])], &[]));
     // With λ_f = 2: Δẋ = Δz + ẏ/2 + y, Δz̈ = −6 Δż − 11 Δz − 6 Δx, and nothing of x_d.
     let lag = Polynomial::new(vec![number(1), BigRational::new(1.into(), 2.into())]);
-    let upper = a9.upper().relative_to(target).filtered(&lag);
+    let upper = a9.upper().relative_to([target; 2]).filtered(&lag);
     let y = Letter::Filter;
     let cascade = upper.steps(1);
     let last = cascade.last().unwrap();
@@ -259,10 +259,10 @@ fn eq_a9_and_the_cascade_after_remark_7() {
 fn eq_52_and_the_other_lower_subsystems_follow_from_motion_and_law() {
     let mass = |letter| own(letter).under(Operator::Mass);
     // (52): m s̈ = −4 m ṡ − 9 s; with (57): m s̈ = −4 m ṡ + Δm w.
-    let known = lower::thrust(&number(4), Some(&number(9)));
+    let known = lower::thrust(Outside::default(), &number(4), Some(&number(9)));
     assert_eq!((known.left, known.order), (form(&[(mass(S), &[0, 0, 1])], &[]), 2));
     assert_eq!(known.right, form(&[(mass(S), &[0, -4]), (own(S), &[-9])], &[]));
-    let adapted = lower::thrust(&number(4), None);
+    let adapted = lower::thrust(Outside::default(), &number(4), None);
     assert_eq!(adapted.right, form(&[(mass(S), &[0, -4]), (term(Term::MassError), &[1])], &[]));
     // (9): M ṡ + C s = −K s + Y Δϑ; (a10) with κ = 4 has −4 Ĵᵀ K* Δx more.
     let left = form(&[(own(S).under(Operator::Inertia), &[0, 1]), (own(S).under(Operator::Coriolis), &[1])], &[]);

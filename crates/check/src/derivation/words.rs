@@ -96,7 +96,7 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
         }
         Step::Thrust(ThrustStep::Continuous, _) => "",
         Step::Thrust(ThrustStep::Differentiable, _) => {
-            "The lower subsystem is linear and exponentially stable, and nothing drives it: s* → 0 with its derivatives."
+            "The lower subsystem is linear and exponentially stable, and no reference drives it: s* → 0 with its derivatives."
         }
         Step::Thrust(ThrustStep::ByAcceleration, _) if case.is_biased() => {
             "V = ½ m ṡ*ᵀṡ* + Δm²/(2γ*) has V̇ = −α* m ṡ*ᵀṡ* − Δm wᵀe, where e is the bias of an accelerometer. The last term has no sign, and \
@@ -124,8 +124,7 @@ pub(super) fn of_s(case: &Case<'_>) -> String {
         }
         Step::Chain(_, kind, _) => {
             let bounds = if case.is_bounded() { kept(*kind) } else { "" };
-            let pushed = if case.is_pushed() { " While something disturbs it, the power s w comes beside that." } else { "" };
-            return chain(*kind) + bounds + pushed;
+            return chain(*kind) + bounds;
         }
         Step::Outside(_) => "",
     }
@@ -158,8 +157,34 @@ fn robot(case: &Case<'_>, known: bool) -> String {
         (false, Some(Rubbing::Dry)) => ", and nothing keeps ϑ̂ from drifting",
         (false, _) => ", and ϑ̂ is bounded",
     };
-    let pushed = if case.is_pushed() { " While something pushes, its power sᵀτ_ext comes beside that." } else { "" };
-    format!("V = {v} has {balance} whatever z does, {skew}{because}. {so}{estimates}.{pushed}")
+    if let Led::Backstepping = case.led {
+        return format!(
+            "V = {v} has {balance} + sᵀM(ζ − ż), {skew}{because}, with ζ for the output of the filter, which stands for ż in the law and in what is \
+             said of ṡ. The last term has no sign, and where z jumps V does: nothing of what follows is shown there."
+        );
+    }
+    format!("V = {v} has {balance} whatever z does, {skew}{because}. {so}{estimates}.")
+}
+
+/// What becomes of all that is said of V where something acts from outside.
+pub(super) fn while_pushed(case: &Case<'_>) -> Option<String> {
+    use super::case::ChainStepKind::Backstepping;
+    let beside = match &case.step {
+        Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::PositionOnly(_) => "its power sᵀτ_ext comes beside that",
+        Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) => "it drives what is said to vanish",
+        Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, _) => "the power of ṡ* times τ̇_ext + α* τ_ext comes beside that",
+        Step::Attitude(_) => "its power (ω − z)ᵀτ_ext comes beside that",
+        Step::PassivityFilter(_) => "its power Δωᵀτ_ext comes beside that",
+        Step::ModelReference(_) => "what e, r and δ make of f comes beside that",
+        Step::Chain(_, Backstepping, _) => {
+            "Σ e_k v_k comes beside that, where v_k is what acts on the k-th equation less what the virtual control α_(k−1) makes of what acts on \
+             those before"
+        }
+        Step::Chain(..) => "the power s w comes beside that",
+        Step::Outside(_) => return None,
+    };
+    let words = || format!("While something acts from outside, {beside}; what is said to vanish then need not, until it ends.");
+    case.is_pushed().then(words)
 }
 
 /// What V has of a mass that is used no farther than its bounds.
@@ -250,6 +275,11 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Led::Leader(FollowingDesign::Swarm { .. }, _) => format!(
             "Without that, the differences to the leader fall as long as the coupling and γ are as large as `forwardstep check` asks. {bounded}, and \
              {q}_i − {q}_0 → 0 with its derivative."
+        ),
+        Led::Leader(..) if case.heard() != At::Now => format!(
+            "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, until it is as \
+             small as the delays let it be: what the leader does meanwhile nobody has heard. {bounded}, and {q}_i − {q}_0 stays within what \
+             `forwardstep check` says."
         ),
         Led::Leader(..) => format!(
             "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, and \

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use forwardstep::check::derivation::explain as derive;
 use forwardstep::check::derivation::residual::{ROUNDING, Residual, Residuals};
-use forwardstep::check::{breaks, check};
+use forwardstep::check::{Footing, check};
 use forwardstep::io::output::{
     TextLine, continuous_twin, ending_sentence, explanation_document, explanation_latex, explanation_lines,
     residual_document, residual_lines,
@@ -29,16 +29,16 @@ pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Con
         return along(&scenario, options.json, console).unwrap_or_else(|status| status);
     }
     let explanation = derive(&scenario.setup);
-    let breaks = breaks(&scenario.setup, &check(&scenario.setup));
+    let footing = Footing::of(&scenario.setup, &check(&scenario.setup));
     if options.json {
-        let document = explanation_document(&scenario, env!("CARGO_PKG_VERSION"), &explanation, &breaks);
+        let document = explanation_document(&scenario, env!("CARGO_PKG_VERSION"), &explanation, &footing);
         // The alternate form is indented.
         console.json(format_args!("{document:#}"));
     } else if options.latex {
-        console.verbatim(explanation_latex(&scenario.setup, &explanation, &breaks));
+        console.verbatim(explanation_latex(&scenario.setup, &explanation, &footing));
     } else {
         console.line(format_args!("{BOLD}{}{BOLD:#}", scenario.title));
-        for line in explanation_lines(&scenario.setup, &explanation, &breaks) {
+        for line in explanation_lines(&scenario.setup, &explanation, &footing) {
             show(&line, console);
         }
     }

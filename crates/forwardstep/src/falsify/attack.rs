@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use forwardstep::check::{Answer, Id, check, ideal};
+use forwardstep::check::{Id, check, ideal};
 use forwardstep::io::output::{Disagreement, Metrics};
 use forwardstep::sim::Setup;
 use forwardstep::sim::graph::{Edge, SpanningTree, spanning_tree};
@@ -176,10 +176,8 @@ impl Attack {
         if left > self.target.fails() {
             (case, left) = self.smallest(case, left, stopped);
         }
-        let report = check(&read(&case).ok()?.setup);
-        let broken =
-            report.hypotheses.iter().filter(|one| !matches!(one.answer(), Answer::Holds | Answer::HoldsOnHorizon));
-        Some(Found { broken: broken.map(|one| one.id).collect(), case, left, tried })
+        let broken = broken_by(&case);
+        Some(Found { broken, case, left, tried })
     }
 
     fn draw(&self, rng: &mut ChaCha8Rng, agents: usize) -> Case {
@@ -356,7 +354,7 @@ impl Attack {
             Target::Swarm => {
                 // Over each of its graphs by itself everybody follows, by our derivation: no paper prints it.
                 let alone = |phase: &Phase| {
-                    broken(&Case { phases: vec![phase.clone()], ..case.clone() }) == [Id::PrintedDesign]
+                    broken_by(&Case { phases: vec![phase.clone()], ..case.clone() }) == [Id::PrintedDesign]
                 };
                 case.phases.iter().all(alone).then(|| error_left(&setup, stopped))?
             }
@@ -371,13 +369,13 @@ impl Attack {
 
     /// The smallest that still fails, with no hypothesis broken that was not before.
     fn smallest(&self, mut case: Case, mut left: f64, stopped: &dyn Fn() -> bool) -> (Case, f64) {
-        let (fails, before) = (self.target.fails(), broken(&case));
+        let (fails, before) = (self.target.fails(), broken_by(&case));
         loop {
             // What is shorter fails less, and is no nearer.
             let smaller = case
                 .smaller()
                 .into_iter()
-                .filter(|smaller| smaller.end_s >= case.end_s && broken(smaller).iter().all(|id| before.contains(id)));
+                .filter(|smaller| smaller.end_s >= case.end_s && broken_by(smaller).iter().all(|id| before.contains(id)));
             let found = smaller
                 .take_while(|_| !stopped())
                 .filter_map(|smaller| Some((self.left(&smaller, stopped)?, smaller)))
@@ -441,10 +439,12 @@ fn disagreement(setup: &Setup, stopped: &dyn Fn() -> bool) -> Option<f64> {
     }
 }
 
-/// The hypotheses that do not hold, each once.
-fn broken(case: &Case) -> Vec<Id> {
-    let Ok(scenario) = read(case) else { return Vec::new() };
-    let report = check(&scenario.setup);
-    let fails = report.hypotheses.iter().filter(|one| !matches!(one.answer(), Answer::Holds | Answer::HoldsOnHorizon));
-    fails.map(|one| one.id).collect()
+fn broken_by(case: &Case) -> Vec<Id> {
+    read(case).map_or_else(|_| Vec::new(), |scenario| broken(&scenario.setup))
+}
+
+/// The hypotheses that do not hold. What a run watches does, until a run stops at it.
+pub(super) fn broken(setup: &Setup) -> Vec<Id> {
+    let report = check(setup);
+    report.hypotheses.iter().filter(|one| !one.answer().is_fine()).map(|one| one.id).collect()
 }

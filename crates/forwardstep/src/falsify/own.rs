@@ -8,7 +8,7 @@
 use std::time::{Duration, Instant};
 
 use forwardstep::check::prediction::{CascadeSpread, NoIdeal};
-use forwardstep::check::{Answer, Id, check, ideal};
+use forwardstep::check::{Id, ideal};
 use forwardstep::io::diagnostic::SourceText;
 use forwardstep::io::output::{Disagreement, Metrics};
 use forwardstep::io::scenario::kinds::Kinds;
@@ -19,6 +19,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use thiserror::Error;
 
+use super::attack::broken;
 use super::case::hundredths;
 use super::judge::{grown, run_unless};
 
@@ -148,10 +149,7 @@ impl OwnAttack<'_> {
         let (plan, worst) = self.smallest(worst, &is_late);
         let text = rewired(&self.scenario.source, &plan).ok_or(NoAttack::Nothing)?;
         let scenario = self.read(&plan).ok_or(NoAttack::Silent)?;
-        let report = check(&scenario.setup);
-        let fails =
-            report.hypotheses.iter().filter(|one| !matches!(one.answer(), Answer::Holds | Answer::HoldsOnHorizon));
-        Ok(OwnFound { text, worst, stated, broken: fails.map(|one| one.id).collect(), tried })
+        Ok(OwnFound { text, worst, stated, broken: broken(&scenario.setup), tried })
     }
 
     fn bounds(&self) -> Result<Bounds, NoAttack> {

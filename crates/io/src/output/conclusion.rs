@@ -1,7 +1,7 @@
 //! What a run came to, in plain words: whether what was to vanish did, how far it is, and what to change.
 
 use forwardstep_check::{Id, Report};
-use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::recording::{ClippedSamples, Ending, Signal};
 use forwardstep_sim::setup::Setup;
 
 use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
@@ -17,6 +17,8 @@ use crate::wording::about;
 const VANISHED: f64 = 0.01;
 /// In a quarter of the run a gap that falls becomes smaller than this much of itself.
 const FALLS: f64 = 0.9;
+/// The same of a gap that falls from row to row.
+const FALLS_STEADILY: f64 = 0.999;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
 /// s at the end, in 1/s of the gap, counts as left over above this.
@@ -133,11 +135,18 @@ enum Trend {
 }
 
 impl Trend {
-    /// By the largest value of the last quarter of the rows and of the one before.
+    /// By the largest value of the last quarter of the rows and of the one before, which of a gap that falls from row to row is
+    /// the one at their start: by those at their ends there.
     fn of(overall: &[f64]) -> Trend {
         let quarter = overall.len() / 4;
         if quarter == 0 {
             return Trend::Stays;
+        }
+        if let [first, .., last] = overall[overall.len() - 1 - quarter..]
+            && overall[overall.len() - 2 * quarter..].is_sorted_by(|before, after| before >= after)
+            && last < FALLS_STEADILY * first
+        {
+            return Trend::Falls(last / first);
         }
         let largest = |part: &[f64]| part.iter().copied().fold(0.0, greater);
         let end = overall.len();
@@ -168,7 +177,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
         // A quarter more than it takes at this rate, which need not stay.
         let end_s = nice(last_t_s + 1.25 * more_s);
         if more_s.is_finite() && more_s <= LONGEST * last_t_s {
-            advice.push(format!("run longer: at this rate `time.end_s = {end_s}` is enough"));
+            advice.push(format!("run longer: at this rate `time.end_s = {end_s}` would be enough"));
         }
     }
     advice.extend(takes_s.map(|takes_s| {
@@ -178,11 +187,16 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
         )
     }));
     advice.extend(hypotheses(record.verdicts));
-    if let Some(clipped) = record.outcome.statistics.clipped
-        && clipped.torque + clipped.rate > 0
+    if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped
+        && torque + rate > 0
     {
-        let (torque, samples) = (clipped.torque + clipped.rate, clipped.samples);
-        advice.push(format!("limits changed {torque} of {samples} commands: raise them, or ask for less"));
+        // One command can meet both.
+        let changed = match (torque, rate) {
+            (torque, 0) => format!("limits of torques changed {torque}"),
+            (0, rate) => format!("limits of torque rates changed {rate}"),
+            (torque, rate) => format!("limits of torques changed {torque}, and limits of their rates {rate},"),
+        };
+        advice.push(format!("{changed} of {samples} commands: raise them, or ask for less"));
     }
     let late = is_late_behind_leader(record.verdicts) && !matches!(trend, Trend::Falls(_));
     if late {

@@ -1,6 +1,6 @@
 //! Why a run converges, as text, LaTeX, JSON and part of the report.
 
-use forwardstep_check::Break;
+use forwardstep_check::{Footing, Ground};
 use forwardstep_check::derivation::{Explained, Explanation, Line};
 use forwardstep_sim::Setup;
 use maud::{Markup, PreEscaped, html};
@@ -13,6 +13,10 @@ use crate::scenario::Scenario;
 /// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.
 pub const EXPLANATION_FORMAT: u32 = 1;
 
+/// The heading of hypotheses that do not hold.
+const LACKS: &str = "What it lacks";
+/// What they mean for what is derived.
+const LACKING: &str = "These hypotheses do not hold here. What follows is derived as if they did, and need not be so.";
 /// The heading of what would break a hypothesis.
 const BREAKS: &str = "What would break it";
 
@@ -30,8 +34,13 @@ pub enum TextLine {
 }
 
 /// An explanation line by line.
-pub fn explanation_lines(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> Vec<TextLine> {
+pub fn explanation_lines(setup: &Setup, explanation: &Explanation, footing: &Footing) -> Vec<TextLine> {
     let mut lines = Vec::new();
+    if !footing.lacks.is_empty() {
+        lines.push(TextLine::Agents(LACKS.into()));
+        lines.push(TextLine::Words(LACKING.into()));
+        lines.extend(footing.lacks.iter().map(|one| TextLine::Words(in_a_line(one))));
+    }
     for design in &explanation.designs {
         lines.push(TextLine::Agents(names::some_names(setup, &design.agents)));
         for section in &design.sections {
@@ -42,21 +51,24 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation, breaks: &[Bre
             }));
         }
     }
-    if !breaks.is_empty() {
+    if !footing.breaks.is_empty() {
         lines.push(TextLine::Agents(BREAKS.into()));
-        lines.extend(breaks.iter().map(|one| TextLine::Words(broken(one))));
+        lines.extend(footing.breaks.iter().map(|one| TextLine::Words(in_a_line(one))));
     }
     lines
 }
 
-/// One of them in a line.
-fn broken(one: &Break) -> String {
+fn in_a_line(one: &Ground) -> String {
     format!("{}: {}", one.id.name(), one.words)
 }
 
 /// An explanation in LaTeX: a section of equations for each design, with the words as comments. It needs amsmath.
-pub fn explanation_latex(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> String {
+pub fn explanation_latex(setup: &Setup, explanation: &Explanation, footing: &Footing) -> String {
     let mut text = String::from("% needs \\usepackage{amsmath}\n");
+    if !footing.lacks.is_empty() {
+        text += &format!("\n\\subsection*{{{LACKS}}}\n{}", comment(LACKING));
+        text.extend(footing.lacks.iter().map(|one| comment(&in_a_line(one))));
+    }
     for design in &explanation.designs {
         text += &format!("\n{}", comment(&names::some_names(setup, &design.agents)));
         for section in &design.sections {
@@ -72,9 +84,9 @@ pub fn explanation_latex(setup: &Setup, explanation: &Explanation, breaks: &[Bre
             }
         }
     }
-    if !breaks.is_empty() {
+    if !footing.breaks.is_empty() {
         text += &format!("\n\\subsection*{{{BREAKS}}}\n");
-        text.extend(breaks.iter().map(|one| comment(&broken(one))));
+        text.extend(footing.breaks.iter().map(|one| comment(&in_a_line(one))));
     }
     text
 }
@@ -87,12 +99,12 @@ fn comment(words: &str) -> String {
 
 /// The place in the paper as a tag.
 fn tag(place: &str) -> String {
-    let words = place.replace('ϑ', "$\\vartheta$").replace('\u{302}', "").replace('φ', "$\\varphi$");
+    let words = place.replace("ϑ\u{302}", "$\\hat{\\vartheta}$").replace('ϑ', "$\\vartheta$").replace('φ', "$\\varphi$");
     if place.is_empty() { String::new() } else { format!(" \\tag*{{{words}}}") }
 }
 
 /// An explanation as JSON.
-pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Explanation, breaks: &[Break]) -> Value {
+pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Explanation, footing: &Footing) -> Value {
     let line = |line: &Line| match line {
         Line::Words(words) => json!({ "words": words }),
         Line::Formula(formula, place) => {
@@ -117,17 +129,29 @@ pub fn explanation_document(scenario: &Scenario, version: &str, explanation: &Ex
     };
     let designs: Vec<Value> = explanation.designs.iter().map(design).collect();
     let checked = json!({ "name": scenario.name, "title": scenario.title });
-    let breaks: Vec<Value> = breaks.iter().map(|one| json!({ "id": one.id.name(), "words": one.words })).collect();
+    let grounds = |all: &[Ground]| -> Vec<Value> {
+        all.iter().map(|one| json!({ "id": one.id.name(), "words": one.words })).collect()
+    };
     json!({
-        "format": EXPLANATION_FORMAT, "version": version, "scenario": checked, "designs": designs, "breaks": breaks,
+        "format": EXPLANATION_FORMAT, "version": version, "scenario": checked, "lacks": grounds(&footing.lacks), "designs": designs,
+        "breaks": grounds(&footing.breaks),
     })
 }
 
 /// An explanation as a section of the report.
-pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, breaks: &[Break]) -> Markup {
+pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footing: &Footing) -> Markup {
     html! {
         section #why {
-            h2 { "Why it works" }
+            h2 { @if footing.lacks.is_empty() { "Why it works" } @else { "Why it would work" } }
+            @if !footing.lacks.is_empty() {
+                div.card {
+                    h3 { (LACKS) }
+                    p { (LACKING) }
+                    @for one in &footing.lacks {
+                        p { code { (one.id.name()) } " " (one.words) }
+                    }
+                }
+            }
             @for design in &explanation.designs {
                 details.card open[explanation.designs.len() == 1] {
                     summary { strong { (names::some_names(setup, &design.agents)) } @if let Some([before, after]) = design.degrees {
@@ -147,10 +171,10 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, break
                     }
                 }
             }
-            @if !breaks.is_empty() {
+            @if !footing.breaks.is_empty() {
                 div.card {
                     h3 { (BREAKS) span.by { "of what holds; the rest says itself what it lacks" } }
-                    @for one in breaks {
+                    @for one in &footing.breaks {
                         p { code { (one.id.name()) } " " (one.words) }
                     }
                 }

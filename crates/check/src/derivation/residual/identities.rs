@@ -58,8 +58,8 @@ struct Frame {
     plant: usize,
     /// s, or a(p) y where a filter stands in for it.
     error: Combination,
-    /// What a deviation is relative to.
-    followed: Option<Quantity>,
+    /// What a deviation is relative to, now and where it is heard.
+    followed: Option<[Quantity; 2]>,
     /// The letters in which variables are made.
     letters: [Letter; 2],
     /// z̈ as the derivative of a ż that holds an integrated variable, where weights are constant.
@@ -69,8 +69,8 @@ struct Frame {
 impl Frame {
     fn of(upper: &Upper, case: &Case<'_>) -> Frame {
         let followed = match (&case.led, upper.state) {
-            (Led::Leader(..), Letter::Deviation) => Some(Quantity::of_leader(Letter::Position)),
-            (_, Letter::Deviation) => Some(Quantity::own(Letter::Target)),
+            (Led::Leader(..), Letter::Deviation) => Some(case.leader()),
+            (_, Letter::Deviation) => Some([Quantity::own(Letter::Target); 2]),
             _ => None,
         };
         let error = Combination::of(Quantity::own(upper.input), upper.filter.clone());
@@ -94,7 +94,8 @@ impl Frame {
             Some(Combination::of(of(state), variable.state.clone()).plus(of(input), &-&variable.input))
         });
         let form = form.replaced(&one, |quantity| {
-            let followed = self.followed.filter(|_| quantity.letter == Letter::Deviation)?;
+            let [now, then] = self.followed.filter(|_| quantity.letter == Letter::Deviation)?;
+            let followed = if quantity.vertex == Vertex::Neighbour { then } else { now };
             let own = Quantity { letter: Letter::Position, ..quantity };
             Some(Combination::of(own, one.clone()).plus(followed, &-&one))
         });

@@ -78,7 +78,7 @@ pub enum Missing {
     Term,
     /// A limit may change what the law asks for.
     Limited,
-    /// Something acts from outside that the equation does not speak of.
+    /// Something acts from outside, and the equation speaks of more than is recorded of it, or does not speak of it.
     Pushed,
     /// An inner loop stands between what is asked for and what the plant does.
     InnerLoop,
@@ -97,7 +97,7 @@ impl fmt::Display for Missing {
             Missing::Neighbour => "it holds something of a neighbour that is not transmitted",
             Missing::Term => "it holds a term that is known to the law alone",
             Missing::Limited => "limits are enforced, which may change what the law asks for",
-            Missing::Pushed => "something acts from outside that it does not speak of",
+            Missing::Pushed => "something acts from outside, of which not everything is recorded",
             Missing::InnerLoop => "an inner loop brings about what it takes to be there at once",
             Missing::Definition => "both sides are the same by definition of their letters",
             Missing::Kink => "what is followed has a kink there",

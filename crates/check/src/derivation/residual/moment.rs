@@ -134,7 +134,17 @@ impl<'c, 'a> At<'c, 'a> {
 
     /// The same with the third derivative of the position of a vehicle, whose thrust and weight cancel when it hovers, as do the
     /// torques of a spacecraft's wheels that turn about nearly the same plane.
+    ///
+    /// What moves with an offset is as exact as that is.
     pub(super) fn moved(&mut self, k: usize) -> Result<Vector, Missing> {
+        let mut moved = self.moved_less_offset(k)?;
+        let offset = self.target().filter(|_| !self.case.is_led_to_target()).unwrap_or_default();
+        let sizes = offset.iter().filter_map(|jet| jet.get(k));
+        moved.iter_mut().zip(sizes).for_each(|(entry, size)| entry[1] += size.abs());
+        Ok(moved)
+    }
+
+    fn moved_less_offset(&mut self, k: usize) -> Result<Vector, Missing> {
         match self.case.step {
             Step::Thrust(..) if k == 3 => self.jerk(),
             Step::Thrust(..) if k == 2 => {
@@ -228,7 +238,7 @@ impl<'c, 'a> At<'c, 'a> {
     fn own(&mut self, quantity: Quantity, k: usize) -> Result<Vector, Missing> {
         match (quantity.letter, quantity.vertex) {
             (Letter::Position, Vertex::Leader) => self.jet(leader(self.case), k),
-            (_, Vertex::Leader | Vertex::Neighbour) => Err(Missing::Neighbour),
+            (_, Vertex::Leader | Vertex::LateLeader | Vertex::Neighbour) => Err(Missing::Neighbour),
             (Letter::Position, Vertex::Own) => self.moved(k),
             (Letter::Reference, Vertex::Own) => self.reference(k).map(exact),
             (Letter::Error, Vertex::Own) => self.error(k),
@@ -264,7 +274,7 @@ impl<'c, 'a> At<'c, 'a> {
                 add(&mut sum, degree, &exact(self.position(0)?));
                 Ok(less(sum, &heard(0)?))
             }
-            (_, Vertex::Neighbour, _) => Err(Missing::Neighbour),
+            (_, Vertex::Neighbour | Vertex::LateLeader, _) => Err(Missing::Neighbour),
             (_, Vertex::Own | Vertex::Leader, k) => {
                 let mut sum = Vector::new();
                 add(&mut sum, degree, &self.own(quantity, k)?);
@@ -349,6 +359,8 @@ impl<'c, 'a> At<'c, 'a> {
             (Term::Protocol, 0) => self.protocol(),
             (Term::Torque, 0) => recorded(Signal::Torque),
             (Term::Input, 0) if matches!(self.case.step, Step::PositionOnly(_)) => recorded(Signal::Torque),
+            (Term::External | Term::Disturbance, 1..) if self.is_pushed() => Err(Missing::Pushed),
+            (Term::External | Term::Disturbance, 1..) => Ok(exact(self.position(0)?.iter().map(|_| 0.0))),
             (Term::External | Term::Disturbance, 0) => match (recorded(self.acting()), self.is_pushed()) {
                 (Err(_), true) => Err(Missing::Pushed),
                 (Err(_), false) => Ok(exact(self.position(0)?.iter().map(|_| 0.0))),
@@ -377,8 +389,6 @@ impl<'c, 'a> At<'c, 'a> {
                 Term::Sign
                 | Term::Torque
                 | Term::Input
-                | Term::External
-                | Term::Disturbance
                 | Term::MassEstimateRate
                 | Term::MassErrorRate
                 | Term::Gravity

@@ -21,7 +21,7 @@ pub(crate) mod text;
 
 use std::time::Duration;
 
-use forwardstep_check::breaks;
+use forwardstep_check::Footing;
 use forwardstep_check::derivation::explain;
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
@@ -115,7 +115,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (signals(record, payload.cascade))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
-                    (explanation_markup(record.setup, &explain(record.setup), &breaks(record.setup, record.verdicts)))
+                    (explanation_markup(record.setup, &explain(record.setup), &Footing::of(record.setup, record.verdicts)))
                     (sections::digital(record))
                     (injected::injected(record))
                     (sections::loads(record.setup, metrics))

@@ -132,8 +132,11 @@ impl<C: Controller> Columns for Solo<C> {
     }
 
     fn trace(&mut self, control: &Control) {
+        // A chain of order one has no velocity, though its controller would read one.
+        let reads = self.controller.reads(Signal::Velocity)
+            && self.plant.outputs().contains(&(Signal::Velocity, self.layout.m));
         let filtered = match control.sensors.velocity {
-            VelocitySensor::Filtered { cut_off_hz } if self.controller.reads(Signal::Velocity) => Some(cut_off_hz),
+            VelocitySensor::Filtered { cut_off_hz } if reads => Some(cut_off_hz),
             VelocitySensor::Filtered { .. } | VelocitySensor::Measured => None,
         };
         let filter = filtered.and_then(|hz| VelocityFilter::new(core::f64::consts::TAU * hz, self.layout.m).ok());

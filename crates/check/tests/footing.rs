@@ -1,7 +1,7 @@
-//! What would break what holds.
+//! What a derivation lacks, and what would break what holds.
 
 use crate::common::{edge, masses, noise};
-use forwardstep_check::{Id, breaks, check};
+use forwardstep_check::{Footing, Id, check};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::{Edge, SpanningTree, spanning_tree};
 use forwardstep_sim::schedule::{Phase, Schedule};
@@ -13,7 +13,7 @@ fn among_masses(schedule: Schedule) -> Setup {
 
 /// What is said of the graphs.
 fn of_graphs(setup: &Setup) -> Option<String> {
-    breaks(setup, &check(setup)).into_iter().find(|one| one.id == Id::SpanningTree).map(|one| one.words)
+    Footing::of(setup, &check(setup)).breaks.into_iter().find(|one| one.id == Id::SpanningTree).map(|one| one.words)
 }
 
 #[test]
@@ -22,11 +22,16 @@ fn every_hypothesis_that_holds_says_once_what_would_break_it_and_no_other_does()
     let report = check(&setup);
     let mut fine: Vec<Id> = report.hypotheses.iter().filter(|one| one.answer().is_fine()).map(|one| one.id).collect();
     fine.dedup();
-    let found: Vec<Id> = breaks(&setup, &report).iter().map(|one| one.id).collect();
-    assert_eq!(found, fine);
+    let footing = Footing::of(&setup, &report);
+    let found: Vec<Id> = footing.breaks.iter().map(|one| one.id).collect();
+    assert_eq!((found, footing.lacks.len()), (fine, 0));
+    let found: Vec<Id> = footing.breaks.iter().map(|one| one.id).collect();
     assert!(found.len() > 3 && found.contains(&Id::RealRoots));
     let cut = among_masses(Schedule::fixed(vec![edge(0, 1, 1.0, 0)]));
     assert_eq!(of_graphs(&cut), None, "what is violated is broken already");
+    let lacks = Footing::of(&cut, &check(&cut)).lacks;
+    assert_eq!(lacks.iter().map(|one| one.id).collect::<Vec<_>>(), [Id::SpanningTree]);
+    assert!(lacks[0].words.starts_with("violated: the union of the graphs"), "{lacks:?}");
     assert!(Id::ALL.iter().all(|id| id.broken_by().len() > 20));
 }
 
