@@ -89,6 +89,16 @@ impl BoundedFormula {
     pub fn stays(&self, key: &'static str, must: Sign) -> Result<(), QuantityError> {
         if let Some(value) = self.constant() {
             such(!value.is_nan(), "", key, value, "must have a finite value")?;
+            // sin π is zero, though not the number next to it.
+            let irrational = self.formula.constant().filter(|number| number.exact().is_none());
+            if let Some(Interval { low, high }) = irrational.map(|number| number.within())
+                && must.is_of(value)
+                && !(must.is_of(low) && must.is_of(high))
+            {
+                let requirement =
+                    Requirement::Throughout { must, within: [low, high], seen_s: None, until_s: self.until_s };
+                return Err(QuantityError { path: key.into(), value, requirement });
+            }
             return match must {
                 Sign::Positive => positive("", key, value),
                 Sign::NotNegative => not_negative("", key, value),

@@ -165,15 +165,18 @@ impl Network {
         })
     }
 
-    /// Checks that packets, random holds and formulas are known until `end_s`, and that what is from outside is until then
-    /// what its author says, as far as that can be seen.
+    /// Checks that the packets, random holds and formulas of links are known until `end_s`, and that what is from outside is until
+    /// then what its author says, as far as that can be seen.
     ///
     /// # Errors
     /// [`NetworkError::EndsEarly`], [`NetworkError::RefutedSwitching`] or [`NetworkError::RefutedDelay`] for the first that is not.
     pub fn lasts_until(&self, end_s: f64) -> Result<(), NetworkError> {
-        let delays = self.delays.iter().map(|delay| delay.known().until_s);
-        let weights = self.weights.iter().map(|formula| Some(formula.until_s()));
-        for (index, until_s) in delays.enumerate().chain(weights.enumerate()) {
+        let delays = self.used_delays().map(|index| (index, self.delays[index].known().until_s));
+        let weights = self.schedule.graphs.iter().flatten().filter_map(|edge| match edge.weight {
+            Weight::Constant(_) => None,
+            Weight::Formula(index) => Some((index, self.weights.get(index).map(BoundedFormula::until_s))),
+        });
+        for (index, until_s) in delays.chain(weights) {
             if let Some(until_s) = until_s.filter(|until_s| *until_s < end_s) {
                 return Err(NetworkError::EndsEarly { index, until_s, end_s });
             }

@@ -37,6 +37,9 @@ pub enum NoCascade {
     /// Reference dynamics other than those of consensus.
     #[error("the reference dynamics are no cascade towards consensus")]
     Reference,
+    /// What (3) and (23) integrate is not the law where the Laplacian changes.
+    #[error("(3) and (23) are for fixed graphs with constant weights")]
+    PureIntegral,
     /// What is heard is no weighted mean.
     #[error("the coupling is nonlinear")]
     Coupling,
@@ -136,6 +139,11 @@ impl CascadeSpread {
 pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
         return Err(NoCascade::Reference);
+    }
+    let graph = setup.network.schedule.constant_graph();
+    let fixed = graph.is_some_and(|edges| edges.iter().all(|edge| edge.weight.constant().is_some()));
+    if setup.reference.is::<PureIntegral>() && !fixed {
+        return Err(NoCascade::PureIntegral);
     }
     if !setup.network.coupling.is_linear() {
         return Err(NoCascade::Coupling);

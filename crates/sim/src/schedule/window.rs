@@ -90,7 +90,19 @@ impl Schedule {
             Extent::Period(segments) => (segments, true),
             Extent::Drawn | Extent::Horizon => (segments.len(), false),
         };
-        let last_for_ever = segments.last().is_some_and(|s| s.end_s.is_infinite());
+        // A schedule that ends needs infinitely many windows in its last graph; what was there before never comes back.
+        let cut_at_last = || {
+            let last = segments.last().filter(|last| last.end_s.is_infinite())?;
+            match spanning_tree(agents, self.graph(last.graph)) {
+                SpanningTree::Rooted { .. } => None,
+                SpanningTree::Missing { closed_groups } => {
+                    Some(Window::Missing { start_s: last.start_s, for_ever: true, closed_groups })
+                }
+            }
+        };
+        if let Some(cut) = cut_at_last().filter(|_| for_all_time) {
+            return cut;
+        }
         let (mut length_s, mut worst_start_s, mut worst_roots) = (-1.0, 0.0, Vec::new());
         // How long one waits for the phase that completes a union, and from when on.
         let (mut wait_s, mut waits_from_s) = (0.0, 0.0);
@@ -125,12 +137,8 @@ impl Schedule {
             }
             union.remove(segments[first].graph);
         }
-        // A schedule that ends needs infinitely many windows in its last graph.
-        if last_for_ever
-            && let Some(last) = segments.last()
-            && let SpanningTree::Missing { closed_groups } = spanning_tree(agents, self.graph(last.graph))
-        {
-            return Window::Missing { start_s: last.start_s, for_ever: true, closed_groups };
+        if let Some(cut) = cut_at_last() {
+            return cut;
         }
         if !for_all_time && 2.0 * wait_s > end_s {
             return Window::Once { wait_s, start_s: waits_from_s };

@@ -10,6 +10,8 @@ use super::network::Network;
 use super::{Fall, Repeat};
 use crate::prediction::SHARE;
 
+/// What looking at a cell costs, of what making one does.
+const LOOK: f64 = 0.02;
 /// Times the fastest rate that a cell is long, where that is not too much work.
 const SHORT: f64 = 0.05;
 /// The same where a weight changes: what is not known of it in a cell is lost.
@@ -119,6 +121,7 @@ impl<'a> Blocks<'a> {
                 *left -= 1.0;
                 if to_s >= look_s {
                     let fall = Fall { t_s: to_s, left: cells.left() };
+                    *left -= LOOK * cells.kept() as f64;
                     found.push(fall);
                     look_s = next(to_s, found.len());
                     let rate = fall.rate_per_s(from_s);

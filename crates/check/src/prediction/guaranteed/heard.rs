@@ -99,8 +99,10 @@ impl Grid<'_> {
     /// Both sides of every boundary of cells strictly between two times.
     fn knots(&self, [low_s, high_s]: [f64; 2], at: impl Fn(f64) -> f64, points: &mut Vec<Point>) {
         let first = self.starts_s.partition_point(|start_s| *start_s <= low_s);
-        let past = self.starts_s[first..].iter().copied();
-        for knot_s in past.chain([self.cell_s[0]]).filter(|knot_s| *knot_s > low_s && *knot_s < high_s) {
+        // Fast roots make cells so short that a window holds hundreds of thousands.
+        let past = self.starts_s[first..].iter().copied().take_while(|knot_s| *knot_s < high_s);
+        let current = Some(self.cell_s[0]).filter(|knot_s| *knot_s > low_s && *knot_s < high_s);
+        for knot_s in past.chain(current) {
             let at = at(knot_s);
             points.push(Point { at, place: self.place(knot_s, Side::Left) });
             points.push(Point { at, place: self.place(knot_s, Side::Right) });
