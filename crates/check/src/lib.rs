@@ -7,11 +7,11 @@
 //! what is found about graphs, links and the loop; a file for each kind of system; a file for each theorem.
 
 mod agreement;
-mod footing;
 pub mod certificate;
 mod conserved;
 pub mod derivation;
 mod fixed;
+mod footing;
 mod graphs;
 pub mod hypothesis;
 mod inertia;
@@ -35,9 +35,9 @@ mod theorem;
 mod theorems;
 
 pub use agreement::{NoPrediction, Prediction, predict};
-pub use footing::{Footing, Ground};
 pub use certificate::certify;
 pub use fixed::NotFixed;
+pub use footing::{Footing, Ground};
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
     AgreementBound, Along, AxisBound, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch,

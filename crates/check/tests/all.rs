@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod agreement;
-mod footing;
 mod common;
+mod footing;
 mod hypotheses;
 mod identities;
 mod laws;

@@ -67,7 +67,11 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
     };
     // Text that could not be written is a failure of its own, but must not hide another.
     match console.finish() {
-        Err(error) if status == Status::Fine => console::complain(&console::Plain::new(error)).into(),
+        Err(error) if status == Status::Fine => {
+            let said = format!("cannot write to the standard output: {error}");
+            let help = Some("what the command wrote into files is whole; its words are what is missing");
+            console::complain(&console::Plain::with_help(said, help)).into()
+        }
         _ => status.into(),
     }
 }

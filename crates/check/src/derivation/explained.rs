@@ -135,7 +135,9 @@ impl Case<'_> {
             Step::PositionOnly([k, _]) => lower::position_only(self.outside(), k),
             Step::Thrust(ThrustStep::Continuous, _) | Step::ModelReference(_) | Step::Outside(_) => return None,
             Step::Thrust(ThrustStep::Differentiable, [alpha, k]) => lower::thrust(self.outside(), alpha, Some(k)),
-            Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => lower::thrust(self.outside(), alpha, None),
+            Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, [alpha, _]) => {
+                lower::thrust(self.outside(), alpha, None)
+            }
             Step::Attitude(_) => lower::attitude(self.outside()),
             Step::PassivityFilter(k) => lower::passivity_filter(self.outside(), k),
             Step::TaskSpace([kappa, _]) | Step::TipVelocity([kappa, _]) => {

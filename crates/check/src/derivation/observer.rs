@@ -100,7 +100,9 @@ pub(super) fn explained(case: &Case<'_>, observer: &Observer) -> Explained {
     };
     let reached = match case.heard() {
         At::Now => "and vanishes in finite time. Then the estimates come to the leader",
-        _ => "until it is as small as the delays let it be, which `forwardstep check` says. Then the estimates come as near to the leader",
+        _ => {
+            "until it is as small as the delays let it be, which `forwardstep check` says. Then the estimates come as near to the leader"
+        }
     };
     sections.push(Section::new(Subject::Convergence).words(words::of_s(case)).words(format!(
         "The estimates obey what (110) makes of robots without s: the largest difference of ξ̂ to the leader falls at a rate of γ less the largest \

@@ -6,6 +6,8 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
 use num_traits::Zero;
 
+use crate::hypothesis::numbers::rounded_up;
+
 use super::case::{Case, Led, Step, ThrustStep};
 use super::form::Letter;
 use super::formula::At;
@@ -69,7 +71,7 @@ pub(super) fn links(setup: &Setup, heard: At) -> String {
     let late = match heard {
         At::Now | At::Time => "no message is late".to_owned(),
         At::Late => format!("T_ij is {} s", range(&delays().map(|delay| delay.max_s()).collect::<Vec<_>>())),
-        At::VaryingLate => format!("T_ij(t) is at most {longest} s"),
+        At::VaryingLate => format!("T_ij(t) is at most {} s", rounded_up(longest)),
     };
     format!("{size}{graph}; {late}.")
 }
@@ -170,9 +172,13 @@ fn robot(case: &Case<'_>, known: bool) -> String {
 pub(super) fn while_pushed(case: &Case<'_>) -> Option<String> {
     use super::case::ChainStepKind::Backstepping;
     let beside = match &case.step {
-        Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::PositionOnly(_) => "its power sᵀτ_ext comes beside that",
+        Step::Robot { .. } | Step::TaskSpace(_) | Step::TipVelocity(_) | Step::PositionOnly(_) => {
+            "its power sᵀτ_ext comes beside that"
+        }
         Step::Thrust(ThrustStep::Continuous | ThrustStep::Differentiable, _) => "it drives what is said to vanish",
-        Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, _) => "the power of ṡ* times τ̇_ext + α* τ_ext comes beside that",
+        Step::Thrust(ThrustStep::Adaptive | ThrustStep::ByAcceleration, _) => {
+            "the power of ṡ* times τ̇_ext + α* τ_ext comes beside that"
+        }
         Step::Attitude(_) => "its power (ω − z)ᵀτ_ext comes beside that",
         Step::PassivityFilter(_) => "its power Δωᵀτ_ext comes beside that",
         Step::ModelReference(_) => "what e, r and δ make of f comes beside that",
@@ -183,7 +189,8 @@ pub(super) fn while_pushed(case: &Case<'_>) -> Option<String> {
         Step::Chain(..) => "the power s w comes beside that",
         Step::Outside(_) => return None,
     };
-    let words = || format!("While something acts from outside, {beside}; what is said to vanish then need not, until it ends.");
+    let words =
+        || format!("While something acts from outside, {beside}; what is said to vanish then need not, until it ends.");
     case.is_pushed().then(words)
 }
 

@@ -1,20 +1,27 @@
 //! `forwardstep attack`
 
-use std::fs;
 use std::time::Duration;
 
 use forwardstep::check::Id;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
+use super::replace;
 use super::stop::Stop;
 use crate::arguments::{AttackOptions, AttackTarget};
 use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
 use crate::falsify::{Attack, GROWS, NoAttack, OwnAttack, OwnFound, Target};
 use crate::status::Status;
 
+/// What the first line of a file says that is saved, between a number and names.
+const LEFT: &str = " % is left; hypotheses that do not hold: ";
+
 /// Searches for delays and schedules under which a design, or a scenario, does worst.
 pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    let is_own = |head: &str| head.lines().next().is_some_and(|line| line.starts_with("# ") && line.contains(LEFT));
+    if let Err(refused) = replace::may_replace(&options.out, is_own) {
+        return complain(&refused);
+    }
     let stop = Stop::listen();
     match AttackTarget::named(&options.what) {
         Some(target) => design(target, options, &stop, console),
@@ -51,7 +58,7 @@ fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Co
     }
     let words = listed(&found.broken);
     console.line(format_args!("  hypotheses that do not hold for it: {words}"));
-    let text = format!("# {percent} % is left; hypotheses that do not hold: {words}\n{}", found.case);
+    let text = format!("# {percent}{LEFT}{words}\n{}", found.case);
     saved(options, &text, console)
         .map_or_else(|status| status, |()| stop.asked().unwrap_or(if refuted { Status::Missed } else { Status::Fine }))
 }
@@ -86,7 +93,7 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
         let more = rest.iter().map(|file| format!(", {}", file.name)).collect::<String>();
         console.line(format_args!("  {DIM}what is saved names files of the scenario: {}{more}{DIM:#}", first.name));
     }
-    saved(options, &format!("# {part} % is left; hypotheses that do not hold: {words}\n{text}"), console)?;
+    saved(options, &format!("# {part}{LEFT}{words}\n{text}"), console)?;
     // That the interval never grows is what the proofs say.
     Ok(stop.asked().unwrap_or(if worst.grew { Status::Missed } else { Status::Fine }))
 }
@@ -103,7 +110,7 @@ fn listed(broken: &[Id]) -> String {
 }
 
 fn saved(options: &AttackOptions, text: &str, console: &mut Console) -> Result<(), Status> {
-    fs::write(&options.out, text).map_err(|error| complain(&Plain::new(error)))?;
+    replace::write(&options.out, text).map_err(|refused| complain(&refused))?;
     console.line(format_args!("  {DIM}saved: {}{DIM:#}", shown(&options.out)));
     Ok(())
 }

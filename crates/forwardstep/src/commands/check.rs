@@ -1,6 +1,5 @@
 //! `forwardstep check`
 
-use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -8,9 +7,9 @@ use forwardstep::check::{Id, PracticalAnswer, Report, certify};
 use forwardstep::io::output::{Findings, certificate_document};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::io::shown;
 
 use super::promise::{predictions, promise, show, show_predictions, style};
+use super::replace;
 use crate::arguments::CheckOptions;
 use crate::console::{BOLD, Console, FAIR, Plain, complain};
 use crate::status::Status;
@@ -65,13 +64,17 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
 
 /// Writes the answers with their proofs, and gives what is claimed without one. A waiver changes no answer.
 fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<Vec<&'static str>, Plain<String>> {
+    replace::may_replace(path, |head| {
+        let mut lines = head.lines();
+        lines.next() == Some("{") && lines.nth(1).is_some_and(|line| line.starts_with("  \"hypotheses\":"))
+    })?;
     let certificate = certify(&scenario.setup, report);
     let mut unproven: Vec<_> =
         certificate.statements.iter().filter(|it| it.is_unproven()).map(|statement| statement.id.name()).collect();
     unproven.dedup();
     let document = certificate_document(scenario, env!("CARGO_PKG_VERSION"), &certificate);
     // The alternate form is indented.
-    fs::write(path, format!("{document:#}\n")).map_err(|error| Plain::new(format!("{}: {error}", shown(path))))?;
+    replace::write(path, &format!("{document:#}\n"))?;
     Ok(unproven)
 }
 

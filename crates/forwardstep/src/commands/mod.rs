@@ -16,6 +16,7 @@ mod manipulability;
 mod new;
 mod progress;
 mod promise;
+mod replace;
 mod report;
 mod robot;
 mod run;

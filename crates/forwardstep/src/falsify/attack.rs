@@ -372,10 +372,9 @@ impl Attack {
         let (fails, before) = (self.target.fails(), broken_by(&case));
         loop {
             // What is shorter fails less, and is no nearer.
-            let smaller = case
-                .smaller()
-                .into_iter()
-                .filter(|smaller| smaller.end_s >= case.end_s && broken_by(smaller).iter().all(|id| before.contains(id)));
+            let smaller = case.smaller().into_iter().filter(|smaller| {
+                smaller.end_s >= case.end_s && broken_by(smaller).iter().all(|id| before.contains(id))
+            });
             let found = smaller
                 .take_while(|_| !stopped())
                 .filter_map(|smaller| Some((self.left(&smaller, stopped)?, smaller)))

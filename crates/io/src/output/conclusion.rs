@@ -171,12 +171,15 @@ impl Trend {
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
     let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
+    let stopped = matches!(record.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. });
     if let (Trend::Falls(left), Some(last_t_s)) = (trend, metrics.last_t_s) {
         // What falls fast at first slows down to what the design does by itself, where that is known.
         let more_s = (last_t_s * share.ln() / left.ln() / 4.0).max(takes_s.unwrap_or(0.0));
         // A quarter more than it takes at this rate, which need not stay.
         let end_s = nice(last_t_s + 1.25 * more_s);
-        if more_s.is_finite() && more_s <= LONGEST * last_t_s {
+        if stopped && end_s <= record.setup.time.end_s {
+            advice.push("let it run to its end: at this rate that is enough".into());
+        } else if more_s.is_finite() && more_s <= LONGEST * last_t_s {
             advice.push(format!("run longer: at this rate `time.end_s = {end_s}` would be enough"));
         }
     }

@@ -5,7 +5,7 @@ use forwardstep_sim::setup::{AgentSetup, Method, Setup};
 use forwardstep_sim::{ChainLaw, ChainStep};
 
 use super::names;
-use crate::wording::{about, number};
+use crate::wording::{about, number, rounded};
 
 /// A gain is to blame for a rate that is at most this many times higher or lower than its own.
 const BLAMED_WITHIN: f64 = 5.0;
@@ -15,15 +15,18 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
     match ending {
         Ending::Completed => format!("Reached the horizon of {} s.", setup.time.end_s),
         Ending::Interrupted { t_s } => {
+            let t_s = number(rounded(*t_s));
             format!("Interrupted at t = {t_s} s of {} s; everything until then is kept.", setup.time.end_s)
         }
         Ending::CutOff { t_s } => {
+            let t_s = number(rounded(*t_s));
             format!("Was cut off at t = {t_s} s of {} s; everything until then was kept.", setup.time.end_s)
         }
         Ending::BrokeDown(breakdown) => {
             let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);
             let cause = cause(setup, breakdown);
-            format!("Broke down at t = {} s of {} s: {column} {cause}.", breakdown.t_s, setup.time.end_s)
+            let t_s = number(rounded(breakdown.t_s));
+            format!("Broke down at t = {t_s} s of {} s: {column} {cause}.", setup.time.end_s)
         }
     }
 }

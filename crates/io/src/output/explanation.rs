@@ -1,7 +1,7 @@
 //! Why a run converges, as text, LaTeX, JSON and part of the report.
 
-use forwardstep_check::{Footing, Ground};
 use forwardstep_check::derivation::{Explained, Explanation, Line};
+use forwardstep_check::{Footing, Ground};
 use forwardstep_sim::Setup;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
@@ -99,7 +99,8 @@ fn comment(words: &str) -> String {
 
 /// The place in the paper as a tag.
 fn tag(place: &str) -> String {
-    let words = place.replace("ϑ\u{302}", "$\\hat{\\vartheta}$").replace('ϑ', "$\\vartheta$").replace('φ', "$\\varphi$");
+    let words =
+        place.replace("ϑ\u{302}", "$\\hat{\\vartheta}$").replace('ϑ', "$\\vartheta$").replace('φ', "$\\varphi$");
     if place.is_empty() { String::new() } else { format!(" \\tag*{{{words}}}") }
 }
 

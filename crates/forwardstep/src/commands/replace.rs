@@ -1,0 +1,45 @@
+//! Files that a command writes where the user says: what somebody else wrote there is never lost.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+use forwardstep::io::shown;
+
+use crate::console::Plain;
+
+/// So much of a file tells what it is.
+const HEAD: u64 = 400;
+
+/// Checks that `path` can be written: nothing is there, or what `is_own` knows by its beginning as written by this command before. Asked
+/// before the work, so that none is lost.
+pub(super) fn may_replace(path: &Path, is_own: impl Fn(&str) -> bool) -> Result<(), Plain<String>> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        let said = format!("there is no folder `{}` to write `{}` into", shown(folder), shown(path));
+        return Err(Plain::with_help(said, Some("make it first")));
+    }
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => {
+            Err(Plain::with_help(format!("`{}` is a folder", shown(path)), Some("name a file in it")))
+        }
+        Ok(found) if found.is_file() && found.len() > 0 => {
+            let mut head = Vec::new();
+            let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+            if read.is_ok() && is_own(&String::from_utf8_lossy(&head)) {
+                return Ok(());
+            }
+            let said = format!("`{}` already exists, and this command did not write it", shown(path));
+            Err(Plain::with_help(said, Some("give another name; it would be lost")))
+        }
+        // A terminal, a pipe, or nothing.
+        Ok(_) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(Plain::new(format!("cannot write `{}`: {error}", shown(path)))),
+    }
+}
+
+/// Writes it.
+pub(super) fn write(path: &Path, text: &str) -> Result<(), Plain<String>> {
+    fs::write(path, text).map_err(|error| Plain::new(format!("cannot write `{}`: {error}", shown(path))))
+}
