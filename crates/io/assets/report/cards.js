@@ -162,8 +162,8 @@ const cards = {
         key: true,
         series: [
           ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
-          ...(d.predicted == null ? [] : [{ label: "predicted", keyed: true, colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
-          { label: axes.length ? "largest" : "disagreement", colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
+          ...(d.predicted == null ? [] : [{ label: "predicted", keyed: true, first: true, colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
+          { label: axes.length ? "largest" : "disagreement", first: true, colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
     },

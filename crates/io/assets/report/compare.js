@@ -38,10 +38,10 @@ const sideCards = quantityIds.flatMap((id) => {
   card.dataset.plot = id;
   const unit = element("span", { className: "unit" });
   const pick = element("div", { className: "pick" });
-  const canvas = element("div", { className: "canvas" });
-  card.append(element("div", { className: "head" }, element("h3", {}, all[0].quantity.title, unit), pick), canvas);
+  const [canvas, picked] = [element("div", { className: "canvas" }), element("span", { className: "picked" })];
+  card.append(element("div", { className: "head" }, element("h3", {}, all[0].quantity.title, unit), picked, pick), canvas);
   cardsPlace.append(card);
-  return [{ id, all, common, card, unit, pick, canvas, chosen: common[0], log: all[0].quantity.log, plot: null }];
+  return [{ id, all, common, card, unit, pick, picked, canvas, chosen: common[0], log: all[0].quantity.log, plot: null }];
 });
 
 const fillCard = (mine) => {
@@ -58,6 +58,8 @@ const fillCard = (mine) => {
   const entry = element("select", { onchange: () => ((mine.chosen = entry.value), fillCard(mine)) });
   entry.setAttribute("aria-label", "what is drawn");
   for (const name of mine.common) entry.append(element("option", { value: name, textContent: name, selected: name === mine.chosen }));
+  // A print has nothing to press.
+  mine.picked.textContent = mine.common.length > 1 ? mine.chosen : "";
   // What has both signs has no logarithm.
   mine.pick.replaceChildren(...(mine.common.length > 1 ? [entry] : []), ...(mine.id === "position" ? [] : [scale]));
   const found = mine.all.flatMap(({ run, quantity }) => quantity.entries.filter((e) => e.name === mine.chosen).map((e) => ({ run, entry: e })));
@@ -244,6 +246,7 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (fil
 const printing = (on) => {
   document.documentElement.classList.toggle("printing", on);
   fillCards();
+  fitSheet(on);
   side.themed();
   side.draw();
 };

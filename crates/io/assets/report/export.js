@@ -5,6 +5,17 @@ const save = (name, blob) => {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 };
+// A sheet cannot be scrolled: tables and formulas that are wider than it are printed smaller.
+const fitSheet = (on) => {
+  for (const wide of document.querySelectorAll(".scroll > table, .formula > math")) {
+    wide.style.zoom = "";
+    const room = wide.parentElement;
+    const { paddingLeft, paddingRight } = getComputedStyle(room);
+    const beside = [...room.children].filter((other) => other !== wide && room.matches(".formula")).reduce((sum, other) => sum + other.offsetWidth + 24, 0);
+    const share = (room.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - beside) / wide.getBoundingClientRect().width;
+    if (on && share < 1) wide.style.zoom = String(Math.floor(1000 * share) / 1000);
+  }
+};
 const shownSeries = (plot) => plot.series.map((s, k) => ({ s, k })).filter(({ s, k }) => k > 0 && s.show && s.label);
 
 // A single-precision number in as few digits as tell it from all others.

@@ -30,12 +30,12 @@ const fill = (card, height) => {
   if (kind === "plane") {
     if (quantities.length < 2 || data.t("main").length === 0) return empty();
     mine.picks = drawPicks(card, planeSpec, mine.picks);
-    mine.plot = drawPlane(canvas, mine.picks, height ?? (innerWidth < 640 ? 220 : 240));
+    mine.plot = drawPlane(canvas, mine.picks, height ?? (isPrinting() ? 184 : innerWidth < 640 ? 220 : 240));
     offer(card, mine.plot);
     return;
   }
   if (kind === "path") {
-    mine.plot = drawPaths(canvas, height ?? 290);
+    mine.plot = drawPaths(canvas, height ?? (isPrinting() ? 220 : 290));
     offer(card, mine.plot);
     return;
   }
@@ -50,7 +50,7 @@ const fill = (card, height) => {
   if (kind === "delay" && built.series.every((s) => s.values.every((v) => v === 0))) return empty();
   mine.series = built.series;
   const far = built.log ? null : outliers(built.series);
-  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (card.closest("#stage") && innerWidth > 1000 && !isPrinting() ? stagePlotHeight() : undefined), within: far?.usual });
+  mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (isPrinting() ? SHEET_PLOT : card.closest("#stage") && innerWidth > 1000 ? stagePlotHeight() : undefined), within: far?.usual });
   const lost = built.series.map(({ values }) => values.beyond_s ?? null).filter((t) => t !== null);
   if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
@@ -60,6 +60,8 @@ const fill = (card, height) => {
   offer(card, mine.plot);
 };
 
+// Four of them fit on a sheet.
+const SHEET_PLOT = 164;
 const isPrinting = () => document.documentElement.classList.contains("printing");
 // Beside the picture there is less room in a low window.
 const stagePlotHeight = () => {
@@ -69,7 +71,7 @@ const stagePlotHeight = () => {
 
 // Names of series that are not agents; what is dashed is named where its card does not say what dashes are.
 const key = (series, plot) => {
-  const named = series.filter((s) => !s.dash || s.keyed);
+  const named = foremost(series.filter((s) => !s.dash || s.keyed));
   const list = element("div", { className: "key" });
   for (const s of named.slice(0, 24)) {
     const line = element("i");
@@ -80,17 +82,27 @@ const key = (series, plot) => {
   return list;
 };
 
+const UNNAMED = "what is drawn";
+// A print has nothing to press, and says what was chosen instead.
+const sayPicked = (place, said) => {
+  const words = place.parentElement.querySelector(".picked") ?? element("span", { className: "picked" });
+  words.textContent = said.join(", ");
+  place.before(words);
+};
+
 // Buttons for a few options, a list for many. Returns what is chosen, keeping earlier choices that still exist.
 const drawPicks = (card, spec, chosen) => {
   const place = card.querySelector(".pick");
   if (!place) return [];
   place.replaceChildren();
-  const picks = [];
+  const [picks, said] = [[], []];
   spec.picks.forEach((pick, k) => {
     const options = typeof pick.options === "function" ? pick.options(picks) : pick.options;
     const values = options.map(([value]) => value);
     picks.push(values.includes(chosen[k]) ? chosen[k] : (pick.first?.(picks, options) ?? values[0]));
     if (options.length < 2) return;
+    const picked = options.find(([value]) => value === picks[k])[1];
+    said.push((pick.name ?? UNNAMED) === UNNAMED ? picked : `${pick.name}: ${picked}`);
     const choose = (value) => {
       const mine = state.get(card);
       mine.picks[k] = value;
@@ -98,7 +110,7 @@ const drawPicks = (card, spec, chosen) => {
       // What was pressed is made anew; whoever goes by keys stays there.
       place.querySelector(`select[data-pick="${k}"], [data-pick="${k}"][aria-pressed="true"]`)?.focus({ preventScroll: true });
     };
-    const name = `${titleOf(card)}: ${pick.name ?? "what is drawn"}`;
+    const name = `${titleOf(card)}: ${pick.name ?? UNNAMED}`;
     const letters = options.reduce((sum, [, name]) => sum + name.length + 3, 0);
     if (letters <= 34) {
       const group = element("div", { className: "buttons" });
@@ -119,6 +131,7 @@ const drawPicks = (card, spec, chosen) => {
       place.append(select);
     }
   });
+  sayPicked(place, said);
   return picks;
 };
 
@@ -215,9 +228,14 @@ document.getElementById("reset").onclick = () => zoomTo(null);
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", fillAll);
 // The layout of the print is there before anything is measured, and all is drawn before the page is printed.
+const advice = document.querySelector("details.advice:not([open])");
+let unfolded = false;
 const printing = (on) => {
+  // A print says all that is advised.
+  if (advice && (on ? !advice.open : unfolded)) advice.open = unfolded = on;
   document.documentElement.classList.toggle("printing", on);
   fillAll();
+  fitSheet(on);
 };
 addEventListener("beforeprint", () => printing(true));
 addEventListener("afterprint", () => printing(false));

@@ -246,6 +246,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         show: s.show ?? true,
         points: { show: times.length < 2 },
         _colour: s.colour,
+        _first: s.first,
       })),
     ],
     hooks: {
@@ -268,6 +269,9 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
   plots.add(plot);
   return plot;
 };
+
+// What stands for the whole is named before its parts, where names may have no room.
+const foremost = (series) => [...series.filter((s) => s.first), ...series.filter((s) => !s.first)];
 
 const removePlot = (plot) => {
   plots.delete(plot);

@@ -221,6 +221,13 @@ const stage = (() => {
     zoom(Math.exp(-0.004 * event.deltaY));
   }, { passive: false });
 
+  // What marks in the picture mean, of those that it has.
+  const marks = () => {
+    const crafts = bodies.filter((b) => b.kind === "spacecraft");
+    const spun = crafts.filter((b) => b.wheel_axes.length > 0);
+    const spins = spun.some((b) => b.wheels.length > 0);
+    return [crafts.some((b) => b.target.length === 4) && "dashed: axes of the target", spun.length > 0 && "circles: reaction wheels", spins && "arrows: their momenta"];
+  };
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
     const led = scene.leader ? `, led by ${scene.leader.name}` : "";
@@ -228,7 +235,8 @@ const stage = (() => {
     if (charted) part("view-help").textContent = "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it. Plots follow the same clock: point at one to go to that time.";
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
-    said = charted ? "positions over time; drag to set the clock" : floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+    const size = floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
+    said = charted ? "positions over time; drag to set the clock" : [size, ...marks()].filter(Boolean).join("; ");
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());

@@ -181,7 +181,7 @@ const pictureOf = (plot, title) => {
   }, plot, title);
   return canvas;
 };
-const namesOf = (plot) => plot.named?.() ?? shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash }));
+const namesOf = (plot) => plot.named?.() ?? foremost(shownSeries(plot).map(({ s }) => ({ label: s.label, colour: s._colour, dash: s.dash, first: s._first })));
 const drawAgain = (plot, pen, head) => {
   if (plot.again) return plot.again(pen, head);
   const paper = paperOf(plot, pen, head);

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::formula::{latex, mathml, unicode};
 use super::names;
+use super::report::text::prose;
 use crate::scenario::Scenario;
 
 /// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.
@@ -149,7 +150,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
                     h3 { (LACKS) }
                     p { (LACKING) }
                     @for one in &footing.lacks {
-                        p { code { (one.id.name()) } " " (one.words) }
+                        p { code { (one.id.name()) } " " (prose(&one.words)) }
                     }
                 }
             }
@@ -162,7 +163,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
                         h3 { (part.subject.heading()) }
                         @for line in &part.lines {
                             @match line {
-                                Line::Words(words) => p { (words) },
+                                Line::Words(words) => p { (prose(words)) },
                                 Line::Formula(formula, place) => div.formula {
                                     (PreEscaped(mathml(formula)))
                                     @if !place.is_empty() { span.place { (place) } }
@@ -176,7 +177,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
                 div.card {
                     h3 { (BREAKS) span.by { "of what holds; the rest says itself what it lacks" } }
                     @for one in &footing.breaks {
-                        p { code { (one.id.name()) } " " (one.words) }
+                        p { code { (one.id.name()) } " " (prose(&one.words)) }
                     }
                 }
             }

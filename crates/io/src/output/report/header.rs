@@ -8,8 +8,8 @@ use super::super::conclusion::Conclusion;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
-use super::sections::{answer_style, ending, final_gap, goal_word, is_undecided, so_far, unit_at};
-use super::text::number;
+use super::sections::{BALANCE_WORDS, answer_style, ending, final_gap, goal_word, is_undecided, so_far, unit_at};
+use super::text::{number, prose};
 
 /// Letters of a title that is set smaller, so that it takes two lines or three.
 const LONG_TITLE: usize = 100;
@@ -41,13 +41,13 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
                     };
                     span.badge.(class) { (word) }
                 }
-                span { (ending(record, goes_on)) }
+                span { (prose(&ending(record, goes_on))) }
             } }
             @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
                 @let ended = !goes_on && !is_undecided(record);
                 p.conclusion {
                     @if goes_on { "so far " } @else if !ended { "when it ended early: " }
-                    strong.good[reached && (ended || goes_on)].bad[!reached && ended] { (sentence) }
+                    strong.good[reached && (ended || goes_on)].bad[!reached && ended] { (prose(&sentence)) }
                 }
                 @if !goes_on { (advised(&advice)) }
             }
@@ -60,10 +60,10 @@ fn advised(advice: &[String]) -> Markup {
     html! {
         @match advice {
             [] => {}
-            [only] => ul.advice { li { (only) } },
+            [only] => ul.advice { li { (prose(only)) } },
             [first, rest @ ..] => details.advice {
-                summary { span.by { "1 of " (advice.len()) ": " } (first) }
-                ul { @for line in rest { li { (line) } } }
+                summary { span.by { "1 of " (advice.len()) ": " } (prose(first)) }
+                ul { @for line in rest { li { (prose(line)) } } }
             },
         }
     }
@@ -88,7 +88,9 @@ pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {
                 (figure(&format!("Peak recorded {}", names::input_words(setup).0), &number(peak.value.abs()), &unit_at(setup, Signal::Torque, peak.agent, peak.axis)))
             }
-            @if let Some(balance) = metrics.balance_residual { (figure("Balance residual", &number(balance.relative), "")) }
+            @if let Some(balance) = metrics.balance_residual {
+                div title=(BALANCE_WORDS) { dt.explained { "Balance residual" } dd { (number(balance.relative)) } }
+            }
             (figure("Agents", &setup.agents.len().to_string(), ""))
         }
     }

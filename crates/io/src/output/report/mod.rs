@@ -107,7 +107,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (header::header(record, metrics, goes_on))
                     (stage::stage(record, metrics, absence, goes_on))
                     @if !record.notices.is_empty() {
-                        section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (notice) } } } }
+                        section.notices aria-label="Notices" { ul { @for notice in &record.notices { li { (text::prose(notice)) } } } }
                     }
                     (sections::verdicts(record, metrics, goes_on))
                     (practical::practical(record, metrics))
@@ -121,7 +121,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (sections::loads(record.setup, metrics))
                     (sections::provenance(record))
                     footer {
-                        @for note in &payload.notes { p { (note) } }
+                        @for note in &payload.notes { p { (text::prose(note)) } }
                         @if goes_on { p { "The tables are written when the run has ended." } }
                         @if !goes_on { p {
                             "Beside this page: " code { "trajectory.parquet" } " with every recorded number, " code { "summary.json" }

@@ -8,7 +8,7 @@ use super::super::metrics::Metrics;
 use super::super::names;
 use super::super::practical::{Watched, WatchedLoad, WatchedMargin, WatchedPower};
 use super::super::record::RunRecord;
-use super::text::{self, number};
+use super::text::{self, number, prose};
 
 /// Nothing where nothing is said.
 pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
@@ -29,8 +29,8 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                             li class=(class) {
                                 span.sign aria-hidden="true" { (sign) }
                                 div {
-                                    p { strong { (finding.about()) } " " em { (finding.answer().words()) } }
-                                    p.because { (finding.because()) }
+                                    p { strong { (prose(finding.about())) } " " em { (finding.answer().words()) } }
+                                    p.because { (prose(&finding.because())) }
                                     p.origin { code { (finding.name()) } }
                                 }
                             }

@@ -8,7 +8,7 @@ use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate};
 use super::super::record::RunRecord;
-use super::text::{self, number};
+use super::text::{self, number, prose};
 
 /// More rows would only repeat themselves.
 const MOST_TORQUES: usize = 24;
@@ -24,7 +24,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             div.card.scroll {
                 h3 { "Agreement" span.by { "predicted from the reference dynamics alone: robots that follow them exactly, s ≡ 0" } }
                 @match &prediction.course {
-                    PredictedCourse::NoneSince(reason) => p.note { "The course of agreement is not predicted, since " (reason) "." },
+                    PredictedCourse::NoneSince(reason) => p.note { "The course of agreement is not predicted, since " (prose(reason)) "." },
                     PredictedCourse::Found(course) => {
                         table.numbers {
                             thead { tr { th {} th { "predicted" } th { "observed" } } }
@@ -35,7 +35,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     }
                 }
                 @match &prediction.rate {
-                    PredictedRate::NoneSince(reason) => p.note { "The rate is not predicted, since " (reason) "." },
+                    PredictedRate::NoneSince(reason) => p.note { "The rate is not predicted, since " (prose(reason)) "." },
                     PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => p.note {
                         "Rate: " (number(*rate_per_s)) " 1/s. A period of " (number(*period_s)) " s leaves " (number(*factor))
                         " of a disagreement, within " (number(100.0 * wavers)) " % over " (periods) " periods."
@@ -50,7 +50,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     },
                 }
                 @for sentence in prediction.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)) {
-                    p.note { "Guaranteed: " (sentence) "." }
+                    p.note { "Guaranteed: " (prose(&sentence)) "." }
                 }
                 @if let Some(s) = metrics.final_tracking_error.filter(|s| *s > 0.0) {
                     p.note { "Tracking errors at the last row are " (number(s)) " at most; what they do to the course is not predicted." }

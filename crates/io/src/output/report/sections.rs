@@ -11,11 +11,15 @@ use super::super::ending::ending_sentence;
 use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
-use super::text::{self, number};
+use super::text::{self, number, prose};
 
 /// More rows would only repeat themselves.
 const MOST_LIMIT_ROWS: usize = 24;
 const MOST_TORQUE_ROWS: usize = 64;
+
+/// What the residual of the balance is.
+pub(super) const BALANCE_WORDS: &str = "The proof rests on an identity: V loses what the law dissipates, dV/dt = −sᵀKs for most laws. The \
+     residual is by how much V + ∫ dissipation strays from that along the run, relative to V; a small one says that the run was computed well.";
 
 /// Whether a run was ended before its horizon by somebody, so that nothing is known of what would have come.
 pub(super) fn is_undecided(record: &RunRecord<'_>) -> bool {
@@ -63,7 +67,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
             div.beside {
                 div.card {
                     h3 { "Promised" span.by { (report.theorem) " · " (report.theorem.source().words()) } }
-                    p.promise { (report.promises) }
+                    p.promise { (prose(&report.promises)) }
                     @if report.hypotheses.is_empty() { p.note { "No hypotheses were checked." } }
                     ul.hypotheses {
                         @for hypothesis in &report.hypotheses {
@@ -71,15 +75,15 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                             li class=(class) {
                                 span.sign aria-hidden="true" { (sign) }
                                 div {
-                                    p { strong { (hypothesis.requires()) } " " em { (hypothesis.answer().words()) } }
+                                    p { strong { (prose(&hypothesis.requires())) } " " em { (hypothesis.answer().words()) } }
                                     p.because {
-                                        (hypothesis.because())
+                                        (prose(&hypothesis.because()))
                                         @if hypothesis.answer() == Answer::Watched && record.outcome.ending == Ending::Completed {
                                             "; this run reached its horizon"
                                         }
                                     }
                                     @if let Some(change) = hypothesis.change() {
-                                        p.because { "To make it hold: " (change) }
+                                        p.because { "To make it hold: " (prose(&change)) }
                                     }
                                     p.origin {
                                         code { (hypothesis.id.name()) } " · " (hypothesis.place()) " · "
@@ -130,7 +134,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
     let setup = record.setup;
     let unit = names::gap_unit(setup);
     html! {
-        (fact("Ending", html! { (ending(record, goes_on)) }))
+        (fact("Ending", html! { (prose(&ending(record, goes_on))) }))
         @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
             (fact("Goal", html! {
                 (outcome.goal.words()) ": "
@@ -171,6 +175,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
                     "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) @if setup.agents[balance.agent].pushes.is_empty() { " of V(0)" } @else { " of the largest V" } " (worst: "
                 } @else { "V is no longer finite (" }
                 (names::agent_name(setup, balance.agent)) ", t = " (number(balance.t_s)) " s)"
+                small { (BALANCE_WORDS) }
             }))
         }
     }

@@ -10,6 +10,7 @@ use super::super::palette::{self, Ground};
 use super::data::harmless_json;
 use super::side_data::{SideIndex, side_data};
 use super::stage::rates;
+use super::text::prose;
 use super::{PAGE_CSS, POLICY, STAGE_CSS, UPLOT_CSS, UPLOT_JS, colours_of, network};
 use crate::shown;
 
@@ -156,7 +157,7 @@ fn notices(comparison: &Comparison) -> Markup {
     let notices: Vec<_> = notices.collect();
     html! {
         @if !notices.is_empty() {
-            section.notices aria-label="Notices" { ul { @for (run, notice) in notices { li { (run.name) ": " (notice) } } } }
+            section.notices aria-label="Notices" { ul { @for (run, notice) in notices { li { (run.name) ": " (prose(notice)) } } } }
         }
     }
 }
@@ -191,13 +192,13 @@ fn line(row: &ComparedRow, runs: usize) -> Markup {
         tr.differs[!row.same] data-row=(row.key) {
             th scope="row" {
                 @if !row.same { span.mark title="differs" { "≠" } }
-                (row.name)
-                @if let Some(note) = &row.note { small { (note) } }
+                (prose(&row.name))
+                @if let Some(note) = &row.note { small { (prose(note)) } }
             }
             @for cell in row.cells.iter().take(if row.same { 1 } else { runs }) {
                 td colspan=[row.same.then_some(runs)] {
-                    (cell.words)
-                    @if let Some(because) = &cell.because { small { (because) } }
+                    (prose(&cell.words))
+                    @if let Some(because) = &cell.because { small { (prose(because)) } }
                     @if row.same && runs > 1 { span.by { "the same in all" } }
                 }
             }

@@ -1,4 +1,6 @@
-//! Numbers as people read them.
+//! Numbers and sentences as people read them.
+
+use maud::{Markup, html};
 
 /// Four significant digits, with a power of ten where the number is very small or large.
 pub(crate) fn number(x: f64) -> String {
@@ -75,6 +77,20 @@ pub(crate) fn count(n: usize, what: &str) -> String {
     if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
+/// A sentence of the program, in which backticks stand around what is code; one without a partner stays as it is.
+pub(crate) fn prose(words: &str) -> Markup {
+    let parts: Vec<&str> = words.split('`').collect();
+    let is_code = |k: usize| k % 2 == 1 && k + 1 < parts.len() && !parts[k].is_empty();
+    html! {
+        @for (k, part) in parts.iter().enumerate() {
+            @if is_code(k) { code { (part) } }
+            @else if k % 2 == 0 { (part) }
+            // What is not closed, or has nothing in it, keeps its backticks.
+            @else { "`" (part) @if k + 1 < parts.len() { "`" } }
+        }
+    }
+}
+
 /// A time of a run to about a thousandth of its horizon, and not later than it is.
 pub(crate) fn time_reached(until_s: f64, end_s: f64) -> String {
     let places = (3.0 - end_s.log10().ceil()).clamp(0.0, 9.0) as usize;
@@ -118,6 +134,23 @@ mod tests {
         assert_eq!(units(["1", "1"].map(String::from).into_iter()), "");
         assert_eq!(units(["1", "m"].map(String::from).into_iter()), "1 or m");
         assert_eq!([in_unit("1"), in_unit(""), in_unit("m")], ["", "", " in m"]);
+    }
+
+    #[test]
+    fn what_stands_between_backticks_is_code_and_everything_is_escaped() {
+        for (words, page) in [
+            ("no code", "no code"),
+            ("set `time.end_s = 230` or `rate`", "set <code>time.end_s = 230</code> or <code>rate</code>"),
+            ("(`a < b`) & <b>", "(<code>a &lt; b</code>) &amp; &lt;b&gt;"),
+            ("`</code><script>` x", "<code>&lt;/code&gt;&lt;script&gt;</code> x"),
+            ("one ` alone", "one ` alone"),
+            ("`a` and ` alone", "<code>a</code> and ` alone"),
+            ("nothing in ``", "nothing in ``"),
+            ("`", "`"),
+            ("", ""),
+        ] {
+            assert_eq!(prose(words).into_string(), page, "{words}");
+        }
     }
 
     #[test]
