@@ -11,6 +11,34 @@ fn is_tame(said: &str) -> bool {
 }
 
 #[test]
+fn regress_no_output_replaces_a_file_of_somebody_else() {
+    let folder = folder();
+    let path = |name: &str| folder.path().join(name);
+    let text = forwardstep::io::scenario::shipped_scenario("first-order").unwrap().text;
+    fs::write(path("own.toml"), text).unwrap();
+    for arguments in [
+        &["check", "own.toml", "--certificate", "own.toml"][..],
+        &["attack", "own.toml", "--seconds", "60", "--out", "own.toml"],
+        &["attack", "a1", "--seconds", "60", "--out", "own.toml"],
+    ] {
+        let began = Instant::now();
+        let said = stderr(&forwardstep(&folder, arguments).code(2));
+        assert!(said.contains("already exists") && said.contains("give another name"), "{said}");
+        assert!(began.elapsed() < Duration::from_secs(30), "nothing is searched for before");
+        assert_eq!(fs::read_to_string(path("own.toml")).unwrap(), text);
+    }
+    // What the command itself wrote it replaces.
+    for _ in 0..2 {
+        forwardstep(&folder, &["check", "own.toml", "--certificate", "own.json"]).success();
+        forwardstep(&folder, &["attack", "24-complex-roots", "--seconds", "1", "--out", "found.toml"]);
+    }
+    fs::write(path("found.toml"), text).unwrap();
+    forwardstep(&folder, &["attack", "24-complex-roots", "--seconds", "1", "--out", "found.toml"]).code(2);
+    let missing = stderr(&forwardstep(&folder, &["check", "own.toml", "--certificate", "no/x.json"]).code(2));
+    assert!(missing.contains("there is no folder `no`") && missing.contains("make it first"), "{missing}");
+}
+
+#[test]
 fn regress_what_a_forged_run_says_does_nothing_to_a_terminal() {
     const EVIL: &str = "\u{1b}[2J\u{1b}[31mOWNED\nall in all: holds\u{200b}";
     let folder = folder();

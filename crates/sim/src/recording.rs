@@ -77,6 +77,17 @@ pub enum Ending {
     BrokeDown(Breakdown),
 }
 
+impl Ending {
+    /// When a run ended before its horizon, s.
+    pub fn before_horizon_s(&self) -> Option<f64> {
+        match self {
+            Ending::Completed => None,
+            Ending::Interrupted { t_s } | Ending::CutOff { t_s } => Some(*t_s),
+            Ending::BrokeDown(breakdown) => Some(breakdown.t_s),
+        }
+    }
+}
+
 /// When, who and what broke a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Breakdown {

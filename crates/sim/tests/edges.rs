@@ -98,6 +98,14 @@ fn a_formula_has_to_be_known_to_the_end_of_the_run_and_no_further() {
     assert_eq!([19.0, 20.0].map(|end_s| network.lasts_until(end_s)), [Ok(()), Ok(())]);
     let error = NetworkError::EndsEarly { index: 0, until_s: 20.0, end_s: 20.1 };
     assert_eq!(network.lasts_until(20.1), Err(error));
+    // What no edge refers to may end before.
+    let short = || BoundedFormula::new(Expression::variable(0).sin_of() * 0.1 + 0.2, 5.0);
+    let (mut delays, weights) = (network.delays.clone(), vec![short()]);
+    delays.push(Delay::new(short()));
+    let mut unused = Network { delays, weights, ..network };
+    assert_eq!(unused.lasts_until(20.0), Ok(()));
+    unused.schedule.graphs[0][0].weight = Weight::Formula(0);
+    assert_eq!(unused.lasts_until(20.0), Err(NetworkError::EndsEarly { index: 0, until_s: 5.0, end_s: 20.0 }));
 }
 
 fn arrivals(delay: &Delay, sent_s: f64) -> Vec<f64> {

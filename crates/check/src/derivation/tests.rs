@@ -7,7 +7,7 @@ use super::attitude;
 use super::cascade::Upper;
 use super::dynamics::{Dynamics, Heard, Measured, Smooth, backstepping, consensus, following, tracking};
 use super::factors::Factors;
-use super::form::{Combination, Form, Letter, Links, Operator, Quantity, Term, Undifferentiable};
+use super::form::{Combination, Form, Letter, Links, Operator, Quantity, Term, Undifferentiable, Vertex};
 use super::laplacian::{RootsOfAll, chain};
 use super::lower::{self, ChainError, Outside};
 use super::polynomial::Polynomial;
@@ -180,6 +180,12 @@ fn eq_112_114_115_and_118_for_alpha_3_and_gamma_7() {
     let differences: [(Quantity, &[i64]); 4] = [(own(V0), &[-1]), (heard(V0), &[1]), (own(S), &[-1]), (heard(S), &[1])];
     let expected = form(&[(sign, &[-7])], &differences).sum(&drive);
     assert_eq!((&fifteen.rates[..], fifteen.degree(1)), (&[expected][..], 0));
+    // Over late links a neighbour tells how far it was from where the leader was then.
+    let then = Quantity { vertex: Vertex::LateLeader, ..Quantity::of_leader(Q) };
+    let late = upper.relative_to([Quantity::of_leader(Q), then]);
+    let late = reduced(&late, vec![variable(Name::RelativeXi, &[3, 1], &[1])]);
+    let moved = form(&[], &[(Quantity::of_leader(Q), &[-3, -1]), (then, &[3, 1])]);
+    assert_eq!(late.rates[0], fifteen.rates[0].sum(&moved));
     // (118): without s; E-free, with balanced brackets.
     assert_eq!(fifteen.rates[0].without(S), form(&[(sign, &[-7])], &network).sum(&drive));
     // After (115): ż = −3 z − 3 s − Σ w (ξ_i − ξ_j) − 7 ς

@@ -74,6 +74,17 @@ fn regress_what_a_run_could_not_record_is_predicted_with_fewer_rows() {
     assert!((at - usual).abs() < 1e-3 * usual, "{at} and {usual}");
 }
 
+/// What (3) and (23) integrate over weights that change is not the law: the interval of all cascaded variables can grow.
+#[test]
+fn regress_3_and_23_have_no_interval_over_links_that_change() {
+    let mut setup = arms(Exchange::Position, 1);
+    setup.time.end_s = 5.0;
+    setup.reference = Arc::new(PureIntegral);
+    assert_eq!(predicted(&setup).within, Err(NoCascade::PureIntegral));
+    setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0), edge(1, 2, 1.0, 0), edge(2, 3, 1.0, 0)]);
+    assert!(predicted(&setup).within.is_ok());
+}
+
 #[test]
 fn who_follows_exactly_never_has_a_tracking_error() {
     for exchange in [Exchange::Position, Exchange::PositionVelocity] {

@@ -384,6 +384,16 @@ fn every_reason_for_no_guaranteed_rate_is_the_one_that_is_said() {
     assert_eq!(said(&many), Some(NoGuaranteedRate::TooLarge { components: 155 }));
 }
 
+/// A window of so fast a root has hundreds of thousands of cells, which took minutes.
+#[test]
+fn regress_a_fast_root_over_a_late_link_has_a_rate_before_long() {
+    let mut setup = pair(1.0, 1.0);
+    setup.network.delays = vec![Delay::constant(0.2)];
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = [1e5, 1.0].into());
+    let found = guaranteed_rate(&setup, WORK).unwrap();
+    assert!(found.falls.iter().any(|fall| fall.left < 0.5), "{:?}", found.falls);
+}
+
 #[test]
 fn numbers_of_any_size_have_a_rate_or_a_reason() {
     for size in [1e-300, 1e-30, 1e-3, 1e3, 1e30, 1e300] {

@@ -1,14 +1,16 @@
 //! What changed V of sampled agents that are by themselves: targets of their own, chains, masses without velocity, vehicles, spacecraft, end-effectors.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep_check::{Injection, InjectionBalance, InjectionWatch};
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
+use forwardstep_core::plant::Formulas;
 use forwardstep_sim::push::{Effect, Push};
 use forwardstep_sim::{
-    AgentSetup, Control, Ending, Exchange, Outcome, Sensors, Setup, ThrustKind, VelocitySensor, simulate,
-    simulate_watched,
+    AgentSetup, ChainModel, Control, Ending, Exchange, Outcome, Sensors, Setup, Start, ThrustKind, VelocitySensor,
+    simulate, simulate_watched,
 };
 
 use super::{constant, ring};
@@ -118,6 +120,28 @@ fn prop_what_is_put_into_v_of_every_kind_adds_up_and_every_cause_counts_where_it
             only(name, &with(setup, |control| control.actuators.torque_quantum = 1e-3), &[Injection::Limited]);
         }
     }
+}
+
+/// A chain of order one has no velocity that a filter could make.
+#[test]
+fn regress_chains_of_order_one_beside_others_are_traced_under_a_filter() {
+    let mut setup = two(&|| chain(&(Expression::variable(0).sin_of() + 2.0), 0, false));
+    let own = |order: usize| {
+        let model = Formulas::new(order, &Expression::number(0.0), Vec::new(), &Expression::number(1.0)).unwrap();
+        Arc::new(ChainModel::Derivatives(Arc::new(model)))
+    };
+    setup.agents[0].robot.kind = own(1);
+    setup.agents[0].start = Start { q: vec![0.3], dq: Vec::new(), rest: Vec::new(), reference: Vec::new() };
+    setup.agents[1].robot.kind = own(2);
+    for agent in &mut setup.agents {
+        agent.roots_per_s = [1.0, 2.0].into();
+    }
+    setup.control.as_mut().unwrap().sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 30.0 };
+    let (outcome, balances) = watched(&setup);
+    assert_eq!((&outcome.ending, balances.len()), (&Ending::Completed, 2));
+    let reconstructed: Vec<bool> =
+        balances.iter().map(|balance| balance.term_j(Injection::Reconstructed) != 0.0).collect();
+    assert_eq!(reconstructed, [false, true]);
 }
 
 #[test]

@@ -30,6 +30,10 @@ fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {
     assert_eq!(design["agents"], serde_json::json!(["arm-1", "arm-2"]));
     assert_eq!((&design["order"], &design["degree"], &design["reduced_degree"]), (&3.into(), &2.into(), &1.into()));
     assert!(json.contains("\"paper\": \"(a2)\""), "{json}");
+    // What does not hold is told first, since the derivation takes it for granted.
+    assert!(text.contains("What it lacks") && text.contains("applied-torque: not covered by the paper: "), "{text}");
+    assert!(latex.contains("% applied-torque: not covered by the paper: "), "{latex}");
+    assert!(document["lacks"].as_array().unwrap().iter().any(|one| one["id"] == "applied-torque"), "{document}");
     // What holds says what would break it, in every form and on the page; what does not hold is broken already.
     let broken = "real-roots: complex roots: the disagreement can then grow";
     assert!(text.contains("What would break it") && text.contains(broken), "{text}");
@@ -38,6 +42,7 @@ fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {
     assert!(ids.starts_with(&["spanning-tree", "dwell-time"]) && ids.contains(&"positive-gains"), "{ids:?}");
     forwardstep(&folder, &["run", "two.toml", "--out", "run"]).success();
     let page = std::fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+    assert!(page.contains("Why it would work") && page.contains("What it lacks"));
     assert!(page.contains("What would break it") && page.contains("complex roots: the disagreement can then grow"));
     forwardstep(&folder, &["explain", "two.toml", "--json", "--latex"]).code(2);
     assert!(stderr(&forwardstep(&folder, &["explain", "thre.toml"]).code(2)).contains("thre.toml"));
@@ -144,6 +149,35 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
         let held = found.iter().filter(|one| one.holds() == Some(true)).count();
         assert!(held > 0, "{}: {found:?}", shipped.name);
     }
+}
+
+/// Where all have come together what is left is the rounding of offsets that move.
+#[test]
+fn regress_what_moves_with_an_offset_is_as_exact_as_the_offset() {
+    let folder = folder();
+    let said = stdout(&forwardstep(&folder, &["explain", "vehicles-behind-a-leader", "--along"]).success());
+    assert!(said.contains("(49)") && !said.contains("NO ROUNDING"), "{said}");
+}
+
+/// Whatever acts from outside is told wherever something is said to vanish, and by whom a late leader is seen late.
+#[test]
+fn regress_pushes_filters_and_late_leaders_are_in_what_is_derived() {
+    let folder = folder();
+    let explained = |name: &str| {
+        let said = stdout(&forwardstep(&folder, &["explain", name]).success());
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    const ENDS: &str = "what is said to vanish then need not, until it ends";
+    let gusts = explained("gusts");
+    assert!(gusts.contains(ENDS) && gusts.contains("ext"), "{gusts}");
+    assert!(explained("desired-in-x").contains(ENDS));
+    assert!(!explained("six-arms").contains(ENDS));
+    let backstepping = explained("backstepping");
+    assert!(backstepping.contains("+ sᵀM(ζ − ż)") && !backstepping.contains("whatever z does"), "{backstepping}");
+    let late = explained("leader-over-late-links");
+    assert!(late.contains("q_0(t − T_ij(t))") && late.contains("as the delays let it be"), "{late}");
+    assert!(!late.contains("finite time") && explained("theorem-8").contains("finite time"), "{late}");
+    assert!(!explained("swarm-tracking").contains("output of a stable filter"));
 }
 
 /// (57) and (58) by a measured acceleration, with and without a bias and bounds.

@@ -46,6 +46,16 @@ fn a_run_that_ends_too_early_says_so_and_how_long_would_be_enough() {
     assert!(long.contains("in words") && long.contains(" agreed: ") && !long.contains("to change"), "{long}");
 }
 
+/// The quarters of a run that falls from row to row tell little apart at its beginning.
+#[test]
+fn regress_what_falls_from_row_to_row_comes_closer() {
+    let folder = folder();
+    let text = format!("{QUICK}[goal]\ndisagreement_below = 1e-3\n").replace("end_s = 30", "end_s = 0.4");
+    fs::write(folder.path().join("two.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "two.toml"]).code(1));
+    assert!(said.contains(", and coming closer") && said.contains("would be enough"), "{said}");
+}
+
 /// What disturbs neighbours fades in a moment; what has to go all around takes long, and is most of what is left.
 #[test]
 fn a_run_that_looks_quick_at_first_is_told_how_long_its_design_takes() {

@@ -168,7 +168,10 @@ fn write_all(
         table(CSV, staging.write(CSV, |out| Ok(csv::write(out, record.setup, recording)?))?);
     }
     if !packets::links(&record.setup.network).is_empty() {
-        table("packets.csv", staging.write("packets.csv", |out| Ok(packets::write(out, record.setup)?))?);
+        table(
+            "packets.csv",
+            staging.write("packets.csv", |out| Ok(packets::write(out, record.setup, &record.outcome.ending)?))?,
+        );
     }
     if draws::draws_phases(&record.setup.network) {
         table("phases.csv", staging.write("phases.csv", |out| Ok(draws::write_phases(out, record.setup)?))?);

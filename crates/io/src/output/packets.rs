@@ -4,6 +4,7 @@ use std::io::Write;
 
 use forwardstep_sim::delay::{Delay, Trace};
 use forwardstep_sim::network::Network;
+use forwardstep_sim::recording::Ending;
 use forwardstep_sim::setup::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,14 +25,15 @@ pub(crate) fn links(network: &Network) -> Vec<(usize, usize, &Trace)> {
     links
 }
 
-/// Writes header and rows, edge by edge and then by send time; a lost packet has an empty delay. Numbers have all digits
-/// needed to read the same numbers back.
-pub(crate) fn write(out: &mut impl Write, setup: &Setup) -> std::io::Result<()> {
+/// Writes header and rows, edge by edge and then by send time, of what was sent until a run ended; a lost packet has an empty delay.
+/// Numbers have all digits needed to read the same numbers back.
+pub(crate) fn write(out: &mut impl Write, setup: &Setup, ending: &Ending) -> std::io::Result<()> {
+    let until_s = ending.before_horizon_s().unwrap_or(f64::INFINITY);
     let mut table = ::csv::Writer::from_writer(out);
     table.write_record(["from", "to", "send_s", "delay_s"]).map_err(io_error)?;
     for (from, to, trace) in links(&setup.network) {
         let (from, to) = (agent_name(setup, from), agent_name(setup, to));
-        for packet in trace.packets() {
+        for packet in trace.packets().iter().take_while(|packet| packet.send_s <= until_s) {
             let delay_s = packet.delay_s.map_or_else(String::new, |delay_s| delay_s.to_string());
             table.write_record([&from, &to, &packet.send_s.to_string(), &delay_s]).map_err(io_error)?;
         }
@@ -39,7 +41,7 @@ pub(crate) fn write(out: &mut impl Write, setup: &Setup) -> std::io::Result<()> 
     table.flush()
 }
 
-/// A link that carried packets, over the whole horizon.
+/// A link that carried packets, until the run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Link {
     /// The sender, by the order of the agents.
@@ -57,10 +59,13 @@ pub struct Link {
 }
 
 impl Link {
-    /// All links of a network.
-    pub(crate) fn all(network: &Network) -> Vec<Link> {
+    /// All links of a network, over a run that ended so.
+    pub(crate) fn all(network: &Network, ending: &Ending) -> Vec<Link> {
         let link = |(from, to, trace): (usize, usize, &Trace)| {
-            let statistics = trace.statistics();
+            let statistics = match ending.before_horizon_s() {
+                Some(t_s) => trace.statistics_until(t_s),
+                None => trace.statistics(),
+            };
             Link {
                 from,
                 to,

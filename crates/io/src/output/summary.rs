@@ -257,7 +257,7 @@ impl Summary {
                     LeaderDrive { peak, peak_s, exceeds_until_s }
                 }),
             },
-            links: Link::all(&setup.network),
+            links: Link::all(&setup.network, &record.outcome.ending),
             digital: record.digital.clone(),
             injected: record.injected.clone(),
             notices: record.notices.clone(),

@@ -9,7 +9,7 @@ use forwardstep_io::output::{Options, RunFolder, RunRecord, write_run};
 use forwardstep_io::scenario::{Notice, Scenario, ScenarioError, open_scenario, read_scenario};
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::{Outcome, simulate};
+use forwardstep_sim::{Outcome, Progress, simulate};
 
 use super::{as_stated, changed, read};
 
@@ -234,7 +234,14 @@ fn every_mistake_in_a_log_is_reported_at_its_place() {
 }
 
 fn run(scenario: &Scenario, folder: &Path) -> Outcome {
-    let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
+    stopped_at(scenario, f64::INFINITY, folder)
+}
+
+/// A run that is stopped once it has come so far, s.
+fn stopped_at(scenario: &Scenario, t_s: f64, folder: &Path) -> Outcome {
+    let mut goes_on =
+        |progress: Progress| if progress.t_s < t_s { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+    let outcome = simulate(&scenario.setup, &mut goes_on).unwrap();
     let verdicts: Report = check(&scenario.setup);
     let record = RunRecord {
         title: &scenario.title,
@@ -282,6 +289,16 @@ fn regress_a_run_replayed_from_its_own_log_has_the_same_bits() {
     assert_eq!(outcome.recording, replay.recording);
     assert_eq!(outcome.statistics.steps, replay.statistics.steps);
     assert_eq!(std::fs::read_to_string(second.join("packets.csv")).unwrap(), log);
+    // Of a run that was stopped only what was sent until then is told.
+    let third = folder.path().join("third");
+    let stopped = stopped_at(&scenario, 4.0, &third).ending.before_horizon_s().unwrap();
+    let short = std::fs::read_to_string(third.join("packets.csv")).unwrap();
+    let times: Vec<f64> = short.lines().skip(1).map(|row| row.split(',').nth(2).unwrap().parse().unwrap()).collect();
+    assert!(times.iter().all(|send_s| *send_s <= stopped) && times.iter().any(|send_s| *send_s > stopped - 0.5));
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(third.join("summary.json")).unwrap()).unwrap();
+    let sent = summary["links"].as_array().unwrap().iter().map(|link| link["sent"].as_u64().unwrap()).sum::<u64>();
+    assert_eq!(sent, times.len() as u64);
     // And it is the packets that make the difference.
     let other = beside(&LINKS.replace("seed = 5", "seed = 6"), folder.path()).unwrap();
     let other = simulate(&other.setup, &mut |_| ControlFlow::Continue(())).unwrap();

@@ -62,6 +62,8 @@ pub(super) const CASES: &[Case] = &[
         "test.toml:5:9: `end_s` is -3.5, but must be positive", ""),
     ("record_every_s = 0.1", "record_every_s = 0",
         "test.toml:6:18: `record_every_s` is 0, but must be positive", ""),
+    ("record_every_s = 0.1", "record_every_s = \"often\"",
+        "test.toml:6:18: found \"often\" where a number should stand", ""),
     // Agents.
     ("name = \"cart\"", "name = \"arm-2\"",
         "test.toml:15:8: a second agent is named `arm-2`; the first is on line 9", "agents of a counted population are named after it: `arm` with `count = 2` gives `arm-1` and `arm-2`"),

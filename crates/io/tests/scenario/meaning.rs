@@ -412,7 +412,7 @@ fn mistakes_about_rows_are_reported_at_their_place() {
     // As many rows as at an interval, and no more.
     let many = super::SOUND.replace("record_every_s = 0.1\n", "record_at = \"samples\"\n");
     let many = many.replace("[goal]", "[control]\nsample_hz = 900000\n[goal]");
-    let error = read(&many).unwrap_err();
+    let error = read(&many).unwrap().check_recording().unwrap_err();
     assert!(error.to_string().contains("the recording would hold"), "{error}");
     assert!(miette::Diagnostic::help(&error).unwrap().to_string().contains("record at fewer times"));
 }

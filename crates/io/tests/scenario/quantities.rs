@@ -11,7 +11,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 use forwardstep_sim::quantity::QuantityError;
 use forwardstep_sim::schedule::{Periodic, Schedule};
-use forwardstep_sim::{Adaptive, ChainLaw, ChainStep, Estimate, Setup, SetupError, recorded_columns, simulate};
+use forwardstep_sim::{Adaptive, ChainLaw, ChainStep, Estimate, Setup, SetupError, check_recording, simulate};
 
 use super::chains::{CASCADES, DERIVATIVES};
 use super::{SOUND, read};
@@ -150,12 +150,13 @@ fn a_file_and_a_setup_are_refused_in_the_same_words() {
     for (sound, cases) in [(SOUND, CASES), (DERIVATIVES, OF_DERIVATIVES), (CASCADES, OF_CASCADES)] {
         for (from, to, place, change, path) in cases {
             assert_eq!(sound.matches(from).count(), 1, "{from:?} must occur once");
-            let of_file = read(&sound.replace(from, to)).map_or_else(|error| error.to_string(), |_| "accepted".into());
+            let of_file = read(&sound.replace(from, to)).and_then(|scenario| scenario.check_recording());
+            let of_file = of_file.map_or_else(|error| error.to_string(), |()| "accepted".into());
             let mut setup = read(sound).unwrap().setup;
             let (words, at) = match change(&mut setup) {
                 Err(error) => (error.to_string(), error.path.to_string()),
                 Ok(()) => {
-                    let error = recorded_columns(&setup).unwrap_err();
+                    let error = check_recording(&setup).unwrap_err();
                     assert_eq!(simulate(&setup, &mut |_| panic!("a step")).err().as_ref(), Some(&error));
                     let at = error.path(&setup).to_string();
                     match error {

@@ -328,12 +328,23 @@ impl Trace {
         self.held.iter().filter(|held| held.sent_s >= 0.0).count()
     }
 
-    /// What happened until the end of the run.
+    /// What happened until the end of the run that this was made for.
     pub fn statistics(&self) -> LinkStatistics {
-        let lost = self.packets.iter().filter(|packet| packet.delay_s.is_none()).count();
-        let arrived = |packet: &&Packet| packet.delay_s.is_some_and(|delay_s| packet.send_s + delay_s <= self.until_s);
-        let arrived = self.packets.iter().filter(arrived).count();
-        LinkStatistics { sent: self.packets.len(), lost, late: arrived - self.arrivals(), largest_age_s: self.max_s }
+        let statistics = self.statistics_until(self.until_s);
+        LinkStatistics { sent: self.packets.len(), largest_age_s: self.max_s, ..statistics }
+    }
+
+    /// What had happened by `t_s`, at which a run may have been stopped.
+    pub fn statistics_until(&self, t_s: f64) -> LinkStatistics {
+        let sent = self.packets.iter().take_while(|packet| packet.send_s <= t_s);
+        let lost = sent.clone().filter(|packet| packet.delay_s.is_none()).count();
+        let arrived = |packet: &&Packet| packet.delay_s.is_some_and(|delay_s| packet.send_s + delay_s <= t_s);
+        let arrived = sent.clone().filter(arrived).count();
+        let held = &self.held[..self.held.partition_point(|held| held.from_s <= t_s)];
+        let heard = held.iter().filter(|held| held.sent_s >= 0.0).count();
+        let ends = held.iter().skip(1).map(|next| next.from_s).chain([t_s]);
+        let largest_age_s = ends.zip(held).map(|(end_s, held)| end_s - held.sent_s.max(0.0)).fold(0.0, f64::max);
+        LinkStatistics { sent: sent.count(), lost, late: arrived - heard, largest_age_s }
     }
 
     fn clamped(&self, index: u64) -> usize {

@@ -116,6 +116,18 @@ fn what_is_drawn_is_judged_by_what_can_be_drawn() {
     assert!(matches!(window(&[&[(0, 1)], &[(1, 2)]], 50.0), Window::Uniform { for_all_time: false, .. }));
 }
 
+/// What a schedule that ends had before its last graph never comes back.
+#[test]
+fn regress_the_groups_of_a_schedule_that_ends_are_those_of_its_last_graph() {
+    let missing = |pairs: &[&[(usize, usize)]]| {
+        Schedule::once(pairs.iter().map(|pairs| phase(1.0, pairs)).collect()).window(3, 40.0)
+    };
+    let closed_groups = vec![vec![0], vec![1], vec![2]];
+    assert_eq!(missing(&[&[(0, 1)], &[]]), Window::Missing { start_s: 1.0, for_ever: true, closed_groups });
+    let closed_groups = vec![vec![0], vec![1]];
+    assert_eq!(missing(&[&[(0, 1)], &[(0, 2)]]), Window::Missing { start_s: 1.0, for_ever: true, closed_groups });
+}
+
 /// What the end of a log cuts off is a window that is not complete, and the run has to be twice as long as what it needs.
 #[test]
 fn regress_a_tail_without_a_tree_is_held_against_a_log() {

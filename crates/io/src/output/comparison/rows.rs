@@ -334,7 +334,7 @@ fn work(s: &Subject<'_>) -> Result<Cell, Cell> {
 }
 
 fn messages(s: &Subject<'_>) -> Result<Cell, Cell> {
-    let links = Link::all(&s.setup().network);
+    let links = Link::all(&s.setup().network, &s.run.record.outcome.ending);
     if links.is_empty() {
         return Err(Cell::none("messages are exchanged without end: no link carries packets"));
     }

@@ -223,7 +223,7 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
                 div.head { h3 { "Delays" span.by { "T(t)" } } div.pick {} }
                 div.canvas {}
             }
-            (network::links(record.setup))
+            (network::links(record))
         }
     }
 }

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 use serde::Serialize;
 
 use super::super::packets::Link;
+use super::super::record::RunRecord;
 use super::super::timeline::Timeline;
 use super::text;
 
@@ -112,8 +113,9 @@ pub(crate) fn shown_delays(setup: &Setup, timeline: &Timeline<'_>) -> Vec<(usize
 }
 
 /// What happened to packets, link by link; nothing where no link carries any.
-pub(crate) fn links(setup: &Setup) -> Markup {
-    let mut links = Link::all(&setup.network);
+pub(crate) fn links(record: &RunRecord<'_>) -> Markup {
+    let setup = record.setup;
+    let mut links = Link::all(&setup.network, &record.outcome.ending);
     let all = links.len();
     if all > MOST_LINKS {
         links.sort_by(|a, b| b.largest_age_s.total_cmp(&a.largest_age_s));
