@@ -11,7 +11,7 @@
 #
 #     accepted         the claim is shown
 #     rejected         the claim is not shown by its proof, contradicts the text, or is left out; with the place in the certificate
-#     could not check  nothing is claimed, or this program knows no proof of it yet
+#     could not check  nothing is claimed, or this program knows no proof of it yet, or finds bounds that are too wide to tell
 #
 # The exit status is 0, 1 or 2 in this order. *Accepted* says that the claims of the certificate are right. A claim may be that a
 # hypothesis is violated: then its witness was replayed, and the last line says so.
@@ -128,6 +128,11 @@ def such(condition, words, value=None):
 def decided(condition, words):
     if not condition: raise Undecided(words)
 
+# What enclosures show, refute, or leave open.
+def settled(node, shown, refuted, words):
+    require(node, shown or not refuted, words)
+    decided(shown, f"is not decided here: {words}")
+
 # A number of a scenario.
 def exact(value, where):
     such(isinstance(value, (int, Fraction)) and not isinstance(value, bool), f"{where} must be a number")
@@ -205,6 +210,8 @@ def inverse(a):
     return span(min(ends), max(ends))
 
 def hull(a, b): return min(a[0], b[0]), max(a[1], b[1])
+
+def common(*found): return max(low for low, _ in found), min(high for _, high in found)
 
 def size(a): return max(abs(a[0]), abs(a[1]))
 
@@ -513,7 +520,7 @@ def enclose(tree, t):
     more = (rooted_out, swinging, functools.partial(swinging, out=False), damped) if tree[0] in "+-*/" else ()
     ways = [found for found in (attempt(way, tree, t) for way in (in_one_pass, by_quotient, *more)) if found]
     decided(ways, "nothing bounds this")
-    return max(low for low, _ in ways), min(high for _, high in ways)
+    return common(*ways)
 
 def attempt(of, *arguments):
     try: return of(*arguments)
@@ -668,8 +675,7 @@ class Agent:
 
     # The table of its law that has gains: of vehicles that of the design.
     def settings(self):
-        design = choice(self.gains.get("design", "differentiable"), "design")[1]
-        return table(design, "design") if self.law == "thrust" else self.gains
+        return table(choice(self.gains.get("design", "differentiable"), "design")[1], "design") if self.law == "thrust" else self.gains
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
 # Those of p² + β p + α may be irrational: real ones are rounded towards the axis, pairs away from the real one.
@@ -702,8 +708,7 @@ def routh(coefficients):
     while len(column) < len(coefficients) and column[-1] > 0:
         column.append(row[0] if row else Fraction(0))
         if column[-1] > 0:
-            rest = itertools.zip_longest(above[1:], row[1:], fillvalue=Fraction(0))
-            above, row = row, [a - above[0] / column[-1] * b for a, b in rest]
+            above, row = row, [a - above[0] / column[-1] * b for a, b in itertools.zip_longest(above[1:], row[1:], fillvalue=Fraction(0))]
     return column
 
 # Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots; and
@@ -946,8 +951,7 @@ class Scenario:
 
     # Whether one graph, with its weights and delays, or whatever these are, is in force in all phases, or in some.
     def fixed(self, phases=None, delays=True):
-        chosen_ = [self.graphs[phase] for phase in phases or range(len(self.graphs))]
-        graphs = [{(edge.source, edge.to, edge.weight, delays and edge.delay[2]) for edge in graph} for graph in chosen_]
+        graphs = [{(e.source, e.to, e.weight, delays and e.delay[2]) for e in self.graphs[k]} for k in phases or range(len(self.graphs))]
         return all(graph == graphs[0] for graph in graphs)
 
     # The phases that are in force again and again, or for ever.
@@ -955,8 +959,7 @@ class Scenario:
 
     # The same where what comes after the run is known.
     def for_ever(self):
-        decided(self.switching != "log", "what comes after a log is not known")
-        return self.recurring()
+        return decided(self.switching != "log", "what comes after a log is not known") or self.recurring()
 
     # What (110) works over: whether graphs take turns, or links delay.
     def over(self):
@@ -1230,17 +1233,18 @@ def numbers(element, key, usual="0 0 0"):
 def parallel(a, b): return all(a[k - 2] * b[k - 1] == a[k - 1] * b[k - 2] for k in range(3))
 
 # For every joint of a URDF that moves: whether it slides, its axis, the axes that those above it turn about, its friction, and of each
-# body that it moves with its link, up to the next joints, mass, pivots of the central inertia, and centre. To an axis that something
-# turns, be it a joint or a placement, the axis of that turn is added: one that is parallel to all is where it was, seen from each link.
+# body that it moves with its link, up to the next joints, mass, pivots of the central inertia, centre, and that inertia, unless its own
+# frame is turned. To an axis that something turns, be it a joint or a placement, the axis of that turn is added: one that is parallel
+# to all is where it was, seen from each link.
 @of_urdf
 def links(agent, root, locked):
     found = []
 
     def body(link):
-        if (inertial := link.find("inertial")) is None: return 0, [0] * 3, [0] * 3
+        if (inertial := link.find("inertial")) is None: return 0, [0] * 3, [0] * 3, None
         rows = [[decimal(inertial.find("inertia").get(f"i{k}", "0")) for k in row.split()] for row in ("xx xy xz", "xy yy yz", "xz yz zz")]
-        inertia, centre = pivots(rows) if any(map(any, rows)) else [0] * 3, numbers(inertial.find("origin"), "xyz")
-        return decimal(inertial.find("mass").get("value")), inertia, centre
+        centre, turns = (numbers(inertial.find("origin"), key) for key in ("xyz", "rpy"))
+        return decimal(inertial.find("mass").get("value")), pivots(rows), centre, None if any(turns) else rows
 
     def visit(name, own, above):
         own.append(bodies[name])
@@ -1366,20 +1370,24 @@ def frictions(scenario):
     return found
 
 # M is positive definite at every q if no body has a negative mass or inertia, and every joint moves some: T = 0 leaves them at rest, and
-# from the base on no joint can move without moving what has mass, if it slides, or turning what has a central inertia ≻ 0, or a mass
-# beside the axis. It is so uniformly if M repeats with the angles, and depends on nothing else; or if every link that moves has mass
-# and a central inertia ≻ 0, with all that is fixed to it: 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and these bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|,
-# or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
+# from the base on no joint can move without moving what has mass, if it slides, or turning what has a central inertia I ≻ 0, or one
+# with uᵀ I u > 0 for its axis u, or a mass beside the axis. It is so uniformly if M repeats with the angles, and depends on nothing
+# else; or if every link that moves has mass and a central inertia ≻ 0, with all that is fixed to it: 2 T ≥ μ Σ(|vᵢ|² + |ωᵢ|²), and
+# these bound q̇ for all q: |q̇ᵢ| ≤ |ωᵢ| + |ωₚ|, or ≤ |vᵢ| + |vₚ| + rᵢ |ωₚ| where i slides on p.
 def solid(scenario, agent):
     slides, axis, *_, end = (found := links(scenario, agent))[-1]
-    possible = all(mass >= 0 and min(inertia) >= 0 and len(inertia) == 3 for *_, bodies in found for mass, inertia, _ in bodies)
-    whole = all(any(mass > 0 and min(inertia) > 0 for mass, inertia, _ in bodies) for *_, bodies in found)
-    felt = all(any(mass > 0 if slides else min(inertia) > 0 for mass, inertia, _ in bodies)
+    possible = all(mass >= 0 and min(inertia) >= 0 and len(inertia) == 3 for *_, bodies in found for mass, inertia, *_ in bodies)
+    whole = all(any(mass > 0 and min(inertia) > 0 for mass, inertia, *_ in bodies) for *_, bodies in found)
+    felt = all(any(mass > 0 if slides else min(inertia) > 0 for mass, inertia, *_ in bodies) or not slides and about(axis, bodies[0]) > 0
                or bodies[0][0] > 0 and not parallel(axis, bodies[0][2]) for slides, axis, *_, bodies in found)
-    # A link at an end that is nothing, or a point on the axis that it turns about, moves without effort.
+    # A link at an end that is nothing, or a point or a line on the axis that it turns about, moves without effort.
+    seen = lambda k, body: body[1] != [0] * 3 if slides or k > 0 or not body[3] else about(axis, body) != 0
     moves = all(mass >= 0 for *_, bodies in found for mass, *_ in bodies) and any(
-        any(own) or mass and (slides or k > 0 or not parallel(axis, centre)) for k, (mass, own, centre) in enumerate(end))
+        seen(k, body) or body[0] and (slides or k > 0 or not parallel(axis, body[2])) for k, body in enumerate(end))
     return moves and not decided(possible and (whole or felt and not swung(found)), "a link of a URDF may have no inertia of its own")
+
+# uᵀ I u of a central inertia I that is seen from the link of an axis u; else zero.
+def about(axis, body): return sum(a * x * b for a, row in zip(axis, body[3] or ()) for x, b in zip(row, axis))
 
 # Whether the travel of a joint that slides enters velocities: where one above it turns about another direction. About its own, what
 # turns keeps its distance from the axis, and gravity pulls by a constant along it.
@@ -1530,49 +1538,52 @@ def pieces(node, tree, end_s):
     require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
     if kind == "for-ever": return [FOR_EVER]
     length = node.field("until_s").number() if kind == "tail" else end_s
-    unit, length = period(tree) if kind == "period" else ((Fraction(1),) * 2, length)
-    cells = node.field("cells").count()
+    (unit, length), cells = period(tree) if kind == "period" else ((Fraction(1),) * 2, length), node.field("cells").count()
     require(node.field("cells"), 0 < cells <= MOST_CELLS and length > 0, "must be some, up to a time that is positive")
     return [multiply(unit, (length * k / cells, length * (k + 1) / cells)) for k in range(cells)] + [(length, INF)] * (kind == "tail")
 
-# Checks that a formula keeps within what is stated, piece by piece; (low, high).
-def enclosed(node, tree, end_s):
+# Checks, piece by piece, that a formula keeps within limits, as what is stated has to: within what is stated, or, where what is found
+# here is wider, within the limits all the same. No value that is seen may lie outside of what is stated. Gives the last piece.
+def enclosed(claim, node, tree, limits, words):
     node.only("range", "cells", "until_s", "within", "edge")
-    ends = [end.number() for end in node.field("within").each()]
-    require(node.field("within"), len(ends) == 2, "must have two ends")
-    for piece in pieces(node, tree, end_s):
+    within, doubt = node.field("within"), ""
+    ends = [end.number() for end in within.each()]
+    require(within, len(ends) == 2, "must have two ends")
+    require(within, limits(*ends), words)
+    fits = lambda found: ends[0] <= found[0] and found[1] <= ends[1]
+    for piece in pieces(node, tree, claim.scenario.end_s):
         found = enclose(tree, piece)
-        if not (ends[0] <= found[0] and found[1] <= ends[1]): found = attempt(straight, tree, piece) or found
-        words = f"does not hold [{said(found[0])}, {said(found[1])}], found from t = {said(piece[0])} s on"
-        require(node.field("within"), ends[0] <= found[0] and found[1] <= ends[1], words)
-    return tuple(ends)
+        if fits(found) or fits(found := common(found, attempt(straight, tree, piece) or WHOLE)): continue
+        for t in (piece[0] + (2**k - 1 if infinite(piece[1]) else (piece[1] - piece[0]) * k / 8) for k in range(9)):
+            low, high = attempt(enclose, tree, (t, t)) or WHOLE
+            require(within, low <= ends[1] and ends[0] <= high, f"does not hold [{said(low)}, {said(high)}], seen at t = {said(t)} s")
+        if not limits(*found): doubt = f"[{said(found[0])}, {said(found[1])}], found from t = {said(piece[0])} s on, decides nothing"
+    decided(not doubt, doubt)
+    return piece
 
 # The same from the middle on, by the slope: the error is one of the square of the length of a piece.
 def straight(tree, piece):
-    middle, half = (piece[0] + piece[1]) / 2, (piece[1] - piece[0]) / 2
-    decided(not infinite(half), "has no middle")
+    middle, half = decided(not infinite(piece[1]), "has no middle") or ((piece[0] + piece[1]) / 2, (piece[1] - piece[0]) / 2)
     return add(enclose(tree, (middle,) * 2), multiply(enclose(derivative(tree), piece), (-half, half)))
 
 def lasts(node): return node.field("range").text() != "run"
 
-# Enclosures of formulas, each named by an edge: {text: (low, high, whether for ever and uniformly continuous)}.
-def formulas(claim, node):
-    found = {}
+# Encloses the formulas of all edges within limits, each named by an edge; whether for ever, and all are uniformly continuous.
+def formulas(claim, node, limits, words):
+    found = {None: True}
     for entry in node.each():
-        text = followed(claim, entry.field("edge"))
+        text = followed(claim, claim.scenario.edge_at(entry.field("edge")))
         if text is None: continue  # What is constant, though by a formula, needs no enclosure.
         tree = formula(text)
-        within = enclosed(entry, tree, claim.scenario.end_s)
+        last = enclosed(claim, entry, tree, limits, f"lets `{text}` {words}")
         # A formula that repeats, and has a value everywhere, is uniformly continuous.
-        repeats, last = entry.field("range").text() == "period", pieces(entry, tree, claim.scenario.end_s)[-1]
-        uniform = lasts(entry) and (repeats or steady(resolved(tree, END), last))
-        decided(uniform or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
-        found[text] = *within, uniform
-    return found
+        found[text] = lasts(entry) and (entry.field("range").text() == "period" or steady(resolved(tree, END), last))
+        decided(found[text] or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
+    for text in {followed(claim, edge) for edge in claim.scenario.used()}: require(node, text in found, f"lacks `{text}`")
+    return all(found.values())
 
 # The formula that the weight or delay of an edge follows, as a text; else None.
-def followed(claim, node):
-    edge = claim.scenario.edge_at(node)
+def followed(claim, edge):
     if claim.id == "bounded-weights": return edge.weight if isinstance(edge.weight, str) else None
     return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
@@ -1583,8 +1594,7 @@ def rule_bound(delay):
     if kind == "constant_s": return not_negative(body, kind)
     if kind in ("formula_s", "log", "hold_log"): return None
     if kind in ("piecewise_constant", "random_hold"):
-        values = table(body, kind).get("values_s" if kind == "piecewise_constant" else "value_s")
-        return max(not_negative(value, kind) for value in listed(values, kind))
+        return max(not_negative(x, kind) for x in listed(table(body, kind).get("value_s" if kind == "random_hold" else "values_s"), kind))
     mean, swing, low, high, latency, jitter = (not_negative(table(body, kind).get(key, 0), key) for key in (
         "mean_s", "amplitude_s", "min_s", "max_s", "latency_s", "jitter_s"))
     period_s = positive(body.get("period_s"), "period_s")
@@ -1611,24 +1621,32 @@ def logged(scenario, edge):
     # An age as large as the run is bounded by that alone.
     return such(2 * (worst := max(worst, scenario.end_s - newest)) <= scenario.end_s, "nothing is seen to arrive again", worst)
 
+# What the worst age of drawn packets is at least, whatever is drawn. Ages count from zero until something arrives, which was sent at
+# `first` or later. If it was at `first`, what is heard next was sent a period or more after it, and until that arrives, or the run
+# ends, the first is heard; if it was later, by a period or more, one waited for it at least as long.
+def least_age(body, end_s):
+    first, latency, apart = (not_negative(body.get(key, 0), key) for key in ("first_s", "latency_s", "period_s"))
+    loss = choice(body["loss"], "loss")[1]
+    # A link that turns bad whenever it is good lets no two packets in a row through, and not the first.
+    if loss.get("enter") == 1: first, apart = first + apart, 2 * apart
+    return end_s if loss.get("probability") == 1 else max(min(first + latency, end_s), min(first + apart + latency, end_s) - first)
+
 # A rule bounds its delay for ever, an enclosure a formula; logs and drawn packets do up to the end of the run.
 @rule("bounded-delays", "delays")
 def delays(claim, bound_s, enclosures, given):
-    scenario, always, largest, shown = claim.scenario, True, Fraction(0), formulas(claim, enclosures)
+    scenario, largest, most = claim.scenario, Fraction(0), bound_s.number()
+    always = formulas(claim, enclosures, lambda low, high: 0 <= low and high <= most, "become negative, or exceed the bound")
     ages = {(a.text(), b.text()): worst_s for a, b, worst_s in (entry.fields("from", "to", "worst_s") for entry in given.each())}
-    for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used()}.values():
+    for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used() if edge.delay[0] != "formula_s"}.values():
         (kind, body, _), worst = edge.delay, rule_bound(edge.delay)
-        if kind == "formula_s":
-            require(enclosures, body in shown and shown[body][0] >= 0, f"lacks `{body}`, or lets it become negative")
-            worst, always = shown[body][1], always and shown[body][2]
-        elif kind in ("log", "hold_log"): worst, always = logged(scenario, edge), False
+        if kind in ("log", "hold_log"): worst, always = logged(scenario, edge), False
         elif worst is None:
             require(given, (link := (scenario.names[edge.source], scenario.names[edge.to])) in ages, f"lacks the link of {link}")
             worst, always = ages[link].number(), False
             # An age as large as the run is bounded by that alone.
-            require(ages[link], not_negative(body.get("latency_s"), "latency_s") <= worst <= scenario.end_s / 2, "is out of range")
+            require(ages[link], least_age(body, scenario.end_s) <= worst <= scenario.end_s / 2, "is out of range")
         largest = max(largest, worst)
-    require(bound_s, largest <= bound_s.number(), f"is exceeded: a delay may reach {said(largest)} s")
+    require(bound_s, largest <= most, f"is exceeded: a delay may reach {said(largest)} s")
     return always
 
 # Heard at samples, a message is up to a period older than its delay.
@@ -1641,26 +1659,25 @@ def in_time(claim, bound_s):
     require(bound_s, late <= bound_s.number() <= least, f"must lie between {said(late)} and {said(least)}")
 
 @rule("bounded-weights", "weights")
-def weights(claim, enclosures):
-    shown = formulas(claim, enclosures)
-    for text in claim.scenario.varying(): require(enclosures, text in shown and shown[text][0] > 0, f"lacks `{text}`, or lets it vanish")
-    return all(shown[text][2] for text in claim.scenario.varying())
+def weights(claim, enclosures): return formulas(claim, enclosures, lambda low, high: 0 < low and high < INF, "vanish")
+
+# A weight of zero is too small, a delay of zero is not.
+def too_small(claim, node, low, high, words):
+    zero = claim.id == "bounded-weights"
+    settled(node, high < 0 or zero and high == 0, high < INF and (low > 0 or low == 0 and not zero), f"{words} [{said(low)}, {said(high)}]")
 
 # A time at which a weight is not positive, or a delay is negative.
 @rule("bounded-weights bounded-delays", "below")
 def below(claim, t_s, edge):
     require(t_s, t_s.number() >= 0, "is before the start")
-    high = enclose(formula(followed(claim, edge)), (t_s.number(),) * 2)[1]
-    require(t_s, high < 0 or (high == 0 and claim.id == "bounded-weights"), "is no such time")
+    too_small(claim, t_s, *enclose(formula(followed(claim, claim.scenario.edge_at(edge))), (t_s.number(),) * 2), "is no such time:")
 
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    tree = formula(followed(claim, edge))
+    tree = formula(followed(claim, claim.scenario.edge_at(edge)))
     # It exceeds every bound again and again, in one direction or the other.
-    if grows(tree): return
-    low, high = limit(tree)
-    require(edge, high < 0 or (high == 0 and claim.id == "bounded-weights"), f"stays near [{said(low)}, {said(high)}]")
+    if not grows(tree): too_small(claim, edge, *limit(tree), "stays near")
 
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):
@@ -1693,8 +1710,7 @@ NUMBERS = {
 
 @rule(" ".join(NUMBERS), "number")
 def number(claim, value):
-    right, words = NUMBERS[claim.id]
-    require(value, right(claim.scenario, value.number()), words)
+    require(value, NUMBERS[claim.id][0](claim.scenario, value.number()), NUMBERS[claim.id][1])
 
 @rule("desired-dynamics", "routh no-routh")
 def hurwitz(claim, column):
@@ -1717,11 +1733,11 @@ def common_first_root(claim, classes):
     at, edges = [place[name] for name in scenario.names], [edge for phase in scenario.recurring() for edge in scenario.pairs[phase]]
     require(classes, all(at[source] <= at[to] for source, to in edges), "are not in order: an edge leads back")
 
-# The pivots of A = L D Lᵀ, in rational numbers, up to the first that is not positive.
+# The pivots of A = L D Lᵀ, in rational numbers, up to the first that is negative, or zero beside what is not: A ⪰ 0 if there is none.
 def pivots(rows):
-    if not rows or rows[0][0] <= 0: return [row[0] for row in rows[:1]]
+    if not rows or rows[0][0] < 0 or rows[0][0] == 0 and any(rows[0]): return [row[0] for row in rows[:1]]
     (pivot, *right), *below_ = rows
-    return [pivot, *pivots([[x - row[0] / pivot * y for x, y in zip(row[1:], right)] for row in below_])]
+    return [pivot, *pivots([[x - row[0] / (pivot or 1) * y for x, y in zip(row[1:], right)] for row in below_])]
 
 # A symmetric matrix is positive definite if and only if all pivots are positive.
 def definite(node, rows, stated):
@@ -1777,7 +1793,7 @@ def motions_of(claim, t=FOR_EVER):
 @rule("bounded-target bounded-leader", "derivatives")
 def bounded(claim, order, stretch):
     stretch.only("range", "cells", "until_s")
-    scenario, always, motions = claim.scenario, True, motions_of(claim)
+    always, motions = True, motions_of(claim)
     require(order, order.count() >= max(most for _, _, most in motions), "is too low for a law")
     decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
     # Agents of one entry share a target.
@@ -1785,8 +1801,8 @@ def bounded(claim, order, stretch):
     for tree, lowest, most in own.values():
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
-                require(stretch, finite(tree, pieces(stretch, tree, scenario.end_s)), f"does not bound derivative {k}")
-                always = lasts(stretch)
+                always, shown = lasts(stretch), finite(tree, pieces(stretch, tree, claim.scenario.end_s))
+                settled(stretch, shown, always and attempt(grows, tree), f"does not bound derivative {k}")
             tree = derivative(tree)
     return always
 
@@ -1873,8 +1889,7 @@ def kept(claim, bounds=None, bound=None):
     limits, entries = LIMITS[claim.id](claim), bounds.each() if bounds else [bound] if bound else []
     require(claim.proof, len(entries) == len(limits), "must have one bound for each axis")
     for entry, (tree, least, most) in zip(entries, limits):
-        low, high = enclosed(entry, tree, claim.scenario.end_s)
-        require(entry.field("within"), least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
+        enclosed(claim, entry, tree, lambda low, high: least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
     return all(lasts(entry) for entry in entries)
 
 @rule("sign-gain target-within-reach", "instant out-of-reach")
@@ -1883,7 +1898,7 @@ def left(claim, t_s, axis=None):
     require(t_s, 1 <= k <= len(limits) and t_s.number() >= 0, "comes before the start, or is of no axis")
     tree, least, most = limits[k - 1]
     low, high = enclose(tree, (t_s.number(),) * 2)
-    require(t_s, high <= least[0] or low >= most[1], f"is no time outside: [{said(low)}, {said(high)}]")
+    settled(t_s, high <= least[0] or low >= most[1], least[1] < low and high < most[0], f"is no time outside: [{said(low)}, {said(high)}]")
 
 # The square of the scalar part Δq_o of the error of an attitude at the start. With R of the tip, p = (v, o) of the target, and
 # a = (R₃₂ − R₂₃, R₁₃ − R₃₁, R₂₁ − R₁₂), 4 Δq_o² = 1 + tr R_dᵀR says 4 pᵀp Δq_o² = pᵀp + (o² − vᵀv) tr R + 2 vᵀR v + 2 o vᵀa.
@@ -1924,8 +1939,7 @@ def changes_sign(claim, entry, from_s, to_s):
 @rule("nonzero-quaternion", "entry-away")
 def entry_away(claim, entry, bound):
     require(entry, 1 <= entry.count() <= 4, "is no entry")
-    within = enclosed(bound, quaternion(claim.own)[entry.count() - 1], claim.scenario.end_s)
-    require(bound.field("within"), max(within[0], -within[1]) > 0, "holds zero")
+    enclosed(claim, bound, quaternion(claim.own)[entry.count() - 1], lambda low, high: low > 0 or high < 0, "holds zero")
     return lasts(bound)
 
 # k λ > β + κ⁴/(2 (β² − α) (β − κ)), κ the smaller root: L − (…/k) 1 of the followers is positive definite.
@@ -2027,8 +2041,8 @@ def outcome(scenario, entry, asked, spoken):
     claim = Claim(scenario, entry)
     for key in [(claim.id, name) for name in claim.agents or [""]]:
         require(entry, claim.id in SEVERAL or key not in spoken, "speaks twice about the same")
-        # What is known of the reach of a URDF depends on where its tip is.
-        require(entry, key in asked or claim.id == "target-within-reach", "is not asked for by this scenario")
+        # What is known of the reach of a URDF depends on where its tip is; and a formula may be seen to be a constant here alone.
+        require(entry, key in asked or claim.id in ("target-within-reach", "bounded-weights"), "is not asked for by this scenario")
         spoken.add(key)
     try: return claim.id, claim.agents, claim.answer, *claim.judge(), ""
     except (Rejected, Meaningless, Undecided) as error: return claim.id, claim.agents, claim.answer, *(error.outcome, *error.args, "")[:3]

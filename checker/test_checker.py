@@ -632,6 +632,10 @@ class FalseProofs(unittest.TestCase):
         judged, found = self.judged(name, each, spoil_proof, *changes)
         self.assertEqual([outcome for outcome, _ in judged], [checker.ACCEPTED], (each, found))
 
+    def unchecked(self, name, each, words, spoil_proof=lambda entry: None, *changes):
+        judged, found = self.judged(name, each, spoil_proof, *changes)
+        self.assertTrue([outcome for outcome, said in judged if words in said] == [checker.UNCHECKED] and len(judged) == 1, (each, found))
+
     def test_trees(self):
         def steps(*edges):
             return lambda entry: entry["proof"]["windows"][0].update(arborescence=[list(edge) for edge in edges], root="arm-1")
@@ -699,11 +703,11 @@ class FalseProofs(unittest.TestCase):
         self.rejected("formulas", "bounded-delays", "become negative", within, negative)
         self.rejected("formulas", "bounded-delays", "does not hold", lambda entry: None, negative)
         low = lambda entry: entry["proof"].update(enclosures=[{**entry["proof"]["enclosures"][0], "within": ["-9", "9"]}])  # noqa: E731
-        self.rejected("formulas", "bounded-weights", "lets it vanish", low)
+        self.rejected("formulas", "bounded-weights", "vanish", low)
         self.rejected("formulas", "bounded-weights", "lacks", lambda entry: entry["proof"].update(enclosures=[]))
         # One piece is too coarse for what 32 show, and a part of the period is not the whole.
         coarse = lambda entry: entry["proof"]["enclosures"][0].update(cells=1)  # noqa: E731
-        self.rejected("formulas", "bounded-weights", "does not hold", coarse)
+        self.unchecked("formulas", "bounded-weights", "[0, 5], found from t = 0 s on, decides nothing", coarse)
         self.rejected("formulas", "bounded-weights", "does not hold", lambda entry: None, ("1.5*sin(2*t)", "1.8*sin(2*t)"))
         slow = lambda entry: entry["proof"]["enclosures"][0].update(range="period", cells=64)  # noqa: E731
         self.rejected("formulas", "bounded-weights", "does not hold", slow, ("+ 1.5*sin(2*t)", "+ 1.5*sin(2*t/9)"))
@@ -711,8 +715,82 @@ class FalseProofs(unittest.TestCase):
         for age in ("0.01", "30.1"):
             older = lambda entry: entry["proof"]["given"][0].update(worst_s=age) or entry["proof"].update(bound_s="60")  # noqa: B023, E731
             self.rejected("six-arms-over-radio", "bounded-delays", "out of range", older)
+        # What is heard before a packet arrives is older than a period, which the scenario states.
+        for period in (0.6, 5, 30, 1000):
+            self.rejected("six-arms-over-radio", "bounded-delays", "out of range", lambda entry: None, ("period_s = 0.02", f"period_s = {period}"))
+        self.accepted("six-arms-over-radio", "bounded-delays", lambda entry: None, ("period_s = 0.02", "period_s = 0.03"))
+        all_lost = ("loss.bursts = { enter = 0.04, leave = 0.2 }", "loss.random.probability = 1")
+        self.rejected("six-arms-over-radio", "bounded-delays", "out of range", lambda entry: None, all_lost)
         self.rejected("six-arms-over-radio", "bounded-delays", "lacks the link", lambda entry: entry["proof"]["given"].pop())
         self.rejected("six-arms-over-radio", "bounded-delays", "more than the proof shows", lambda entry: entry.update(answer="holds"))
+
+    def test_no_draw_of_packets_stays_younger(self):
+        """Ages of packets that are drawn here, exactly; and the best draw, which comes as close as can be."""
+        draw, tight = random.Random(12), 0
+        number_ = lambda most: checker.Fraction(draw.randrange(most + 1), 10)  # noqa: E731
+        for case in range(2000):
+            period, end_s = number_(60) + checker.Fraction(1, 10), number_(200) + checker.Fraction(1, 10)
+            first, latency, jitter = min(number_(60), period), draw.choice((0, number_(30))), number_(20)
+            enter = draw.choice((0, 0.3, 1))
+            loss = {"bursts": {"enter": enter, "leave": 0.4}} if enter else {"random": {"probability": draw.choice((0.2, 0.9, 1))}}
+            (_, body), = loss.items()
+            body_ = {"first_s": first, "latency_s": latency, "period_s": period, "jitter_s": jitter, "loss": loss}
+            least = checker.least_age(body_, end_s)
+
+            def worst(fate, late):
+                bad, arrivals, k = False, [], 0
+                while first + k * period <= end_s:
+                    bad = fate() < body["probability"] if not enter else fate() < enter if not bad else fate() >= body["leave"]
+                    arrivals += [] if bad else [(first + k * period + latency + late() * jitter, first + k * period)]
+                    k += 1
+                newest, oldest = checker.Fraction(0), checker.Fraction(0)
+                for at, sent in sorted(arrivals) + [(end_s, None)]:
+                    if at <= end_s and (sent is None or sent >= newest): oldest, newest = max(oldest, at - newest), sent
+                return oldest
+
+            for _ in range(5):
+                self.assertGreaterEqual(worst(draw.random, lambda: checker.Fraction(draw.randrange(8), 8)), least, (body_, end_s))
+            # The best luck: no packet is late, and none is lost; or every other one, where a good link turns bad each time.
+            best = worst(lambda: 0 if enter == 1 else 0.999, lambda: 0)
+            self.assertEqual(best, least, (body_, end_s))
+            tight += best < end_s
+        self.assertGreater(tight, 1000)
+
+    def test_enclosures_that_are_wider_than_what_is_stated_may_be_narrow_enough(self):
+        motion = [("motion.sinusoids = [", 'motion.formulas = ["2*t/(1 + t)", "0"]\n#'), ("    { offset = 0.3,", "#"),
+                  ("    { offset = -0.2,", "#"), ("\n]", "\n#")]
+        zero = {"range": "for-ever", "within": ["0", "0"]}
+        # α q̇ + q̈ rises from −2 to 2/27 at t = 2, and falls to zero.
+        within = lambda low, high, until_s="1": lambda entry: entry.update(answer="holds", proof={"kind": "bounds", "bounds": [  # noqa: E731
+            {"range": "tail", "until_s": until_s, "cells": 8, "within": [low, high]}, zero]})
+        gain = lambda by: [*motion, ("gain = 2 ", f"gain = {by} ")]  # noqa: E731
+        self.accepted("theorem-8", "sign-gain", within("-2", "0.0741"), *gain("2.2"))
+        # The first eighth of a second is enclosed by −2.147, which decides nothing about 2.1.
+        self.unchecked("theorem-8", "sign-gain", "decides nothing", within("-2", "0.0741"), *gain("2.1"))
+        # What is stated is not so, though more would be enough; or what is asked for is not.
+        self.rejected("theorem-8", "sign-gain", "does not hold [-2, -2], seen at t = 0", within("-1.9", "0.0741"), *gain("2.1"))
+        self.rejected("theorem-8", "sign-gain", "does not hold", within("-2", "0.07", "2"), *gain("2.1"))
+        self.rejected("theorem-8", "sign-gain", "leaves (-2, 2)", within("-2", "0.0741"), *gain("2"))
+        self.rejected("theorem-8", "sign-gain", "does not hold [-2, -2]", within("-1.9", "0.0741"), *gain("1.95"))
+        weight = lambda text: ('"2.5 + sin(t) + 1.5*sin(2*t)"', f'"{text}"')  # noqa: E731
+        one = lambda low, high, range_="period": lambda entry: entry["proof"]["enclosures"][0].update(  # noqa: E731
+            cells=1, range=range_, within=[low, high])
+        self.accepted("formulas", "bounded-weights", one("2.5", "7.4"), weight("5 + sin(t) + 1.5*sin(2*t)"))
+        self.rejected("formulas", "bounded-weights", "does not hold", one("3.5", "6"), weight("5 + sin(t) + 1.5*sin(2*t)"))
+        # Of 2.3 in the middle nobody knows here; and what has no bound is not one.
+        self.unchecked("formulas", "bounded-weights", "decides nothing", one("0.1", "4.9"), weight("2.4 + sin(t) + 1.5*sin(2*t)"))
+        self.unchecked("formulas", "bounded-weights", "decides nothing", one("1", "1000000", "for-ever"), weight("1 + t"))
+        self.rejected("formulas", "bounded-weights", "does not hold", one("1", "200", "for-ever"), weight("1 + t"))
+        bound = lambda entry: entry["proof"]["enclosures"][0].update(cells=1, within=["0.1", "0.29"]) or entry["proof"].update(bound_s="0.3")  # noqa: E731
+        delay = lambda text: ('"0.2 + 0.1*sin(2*pi*t/3)"', f'"{text}"')  # noqa: E731
+        self.accepted("formulas", "bounded-delays", bound, delay("0.2 + 0.05*sin(2*pi*t/3) + 0.05*cos(4*pi*t/3)"))
+        self.rejected("formulas", "bounded-delays", "exceed the bound", lambda entry: entry["proof"].update(bound_s="0.29"))
+
+    def test_a_weight_may_be_a_constant_by_a_formula(self):
+        constant = ('"2.5 + sin(t) + 1.5*sin(2*t)"', '"0.3 + 0*t"')
+        self.accepted("formulas", "bounded-weights", lambda entry: None, constant)
+        vanishes = lambda entry: entry.update(answer="violated", proof={"kind": "limit", "edge": ["mass-1", "mass-2", 1]})  # noqa: E731
+        self.rejected("formulas", "bounded-weights", "must be a text", vanishes, constant)
 
     def test_no_piece_shows_nothing(self):
         none = lambda entry: entry["proof"]["enclosures"][0].update(cells=0, within=["1", "2"])  # noqa: E731
@@ -732,6 +810,8 @@ class FalseProofs(unittest.TestCase):
         self.rejected("formulas", "bounded-delays", "no such time", at("1"))
         self.rejected("formulas", "bounded-weights", "before the start", at("-2"), weight("1 + t"))
         self.rejected("formulas", "bounded-delays", "before the start", at("-2"), delay("1 + t"))
+        # Zero, or next to it on either side, as far as enclosures tell.
+        self.unchecked("formulas", "bounded-weights", "no such time", at("1/3"), weight("0.5 - cos(pi*t)"))
         # A weight of zero is none, a delay of zero is one.
         self.accepted("formulas", "bounded-weights", at("0"), weight("t"))
         self.rejected("formulas", "bounded-delays", "no such time", at("0"), delay("t"))
@@ -745,6 +825,8 @@ class FalseProofs(unittest.TestCase):
             self.accepted("formulas", "bounded-weights", ends, weight(text))
         for text in ("0.5 + exp(-t)", "t/(1 + t)", "sqrt(2 + (t - 3)^2)/(1 + t)"):
             self.rejected("formulas", "bounded-weights", "stays near", ends, weight(text))
+        # It comes below zero again and again, which its limit points do not tell here.
+        self.unchecked("formulas", "bounded-weights", "stays near", ends, weight("0.5 + sin(t)"))
         # A delay may come to zero, and not below.
         self.accepted("formulas", "bounded-delays", ends, delay("2 - t/(1 + t)*3"))
         for text in ("exp(-t)", "1/(1 + t)", "0.5 + exp(-t)"):
@@ -922,6 +1004,18 @@ class FalseProofs(unittest.TestCase):
                                        ((turn, turn), '<origin xyz="1 0 0"/><mass value="1"/><inertia ixx="-0.1" iyy="1" izz="1"/>', None),
                                        ((turn, turn), '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="2"/>', None)):
             self.assertEqual(self.judged_robot(checker.solid, *joints, last=last), expected, (joints, last))
+        # An inertia about some axes: about that of the joint, not about it, and about one that is not looked at.
+        rod = lambda turned=still, more="": f'<origin xyz="0 0 1" rpy="{turned}"/><mass value="1"/><inertia ixx="0" iyy="0" izz="0.1"{more}/>'  # noqa: E731
+        across = "revolute", "1 0 0", still
+        for joint, last, expected in ((turn, rod(), True), (("revolute", "1 1 1", still), rod(), True), (turn, rod("0.1 0 0"), None),
+                                      (across, rod().replace("0 0 1", "1 0 0"), False), (across, rod(), True),
+                                      # Of what no body has nothing is said: a negative inertia about x + y, or about z.
+                                      (turn, rod(more=' ixy="-1"'), None), (turn, rod().replace("0.1", "-0.1"), None)):
+            self.assertIs(self.judged_robot(checker.solid, turn, joint, last=last), expected, (joint, last))
+        self.assertTrue(self.judged_robot(checker.solid, turn, turn, body=rod()))
+        self.assertIsNone(self.judged_robot(checker.solid, slide, turn, body=rod(), last=rod("0.1 0 0")))
+        self.assertEqual(checker.pivots([[0, 0, 0], [0, 2, 1], [0, 1, 3]]), [0, 2, checker.Fraction(5, 2)])
+        self.assertEqual(checker.pivots([[0, 0, 1], [0, 2, 1], [1, 1, 3]]), [0])
         self.assertTrue(self.judged_robot(checker.solid, turn, turn, body=point("0.2 0 0")))
         self.assertIs(self.judged_robot(checker.solid, turn, turn, body=point("0.2 0 0"), last=point("0 0 1")), False)
         # With something that is fixed to it, whose centre is not looked at, such a point may be beside.
@@ -975,7 +1069,7 @@ class FalseProofs(unittest.TestCase):
         self.rejected("remark-12", "sign-gain", "is no time", instant("1"), ("gain = 2 ", "gain = 0.1 "))
         self.accepted("remark-12", "sign-gain", instant("3"), ("gain = 2 ", "gain = 0.1 "))
         # Where the third derivative jumps both sides count.
-        self.rejected("remark-12", "sign-gain", "is no time", instant("2"), ("gain = 2 ", "gain = 0.1 "))
+        self.unchecked("remark-12", "sign-gain", "is no time", instant("2"), ("gain = 2 ", "gain = 0.1 "))
         # A quaternion that vanishes at a point, and one that does between two.
         for row in ("[0, 0, 0, 0]", "[0, 0, 0, -1]"):
             wide = lambda entry: entry["proof"]["bound"].update(within=["-9", "9"])  # noqa: E731
@@ -1265,8 +1359,9 @@ class FalseProofs(unittest.TestCase):
         def on(answer="holds", **stretch):
             return lambda entry: entry.update(answer=answer, proof={"kind": "derivatives", "order": 3, "stretch": stretch})
         self.accepted(name, each, on(range="period", cells=30), narrow)
-        self.rejected(name, each, "does not bound derivative 0", on(range="for-ever"), narrow)
-        self.rejected(name, each, "does not bound derivative 0", on(range="period", cells=2), narrow)
+        self.unchecked(name, each, "does not bound derivative 0", on(range="for-ever"), narrow)
+        self.unchecked(name, each, "does not bound derivative 0", on(range="period", cells=2), narrow)
+        self.rejected(name, each, "does not bound derivative 0", on(range="for-ever"), ('"sin(t)"', '"t*sin(t)"'))
         self.rejected(name, each, "more than the proof shows", on(range="run", cells=10), narrow, short)
         self.accepted(name, each, on("holds on [0, end]", range="run", cells=10), narrow, short)
 
