@@ -1,5 +1,7 @@
 //! `forwardstep attack`
 
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::time::Duration;
 
 use forwardstep::check::Id;
@@ -18,7 +20,11 @@ const LEFT: &str = " % is left; hypotheses that do not hold: ";
 
 /// Searches for delays and schedules under which a design, or a scenario, does worst.
 pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    let is_own = |head: &str| head.lines().next().is_some_and(|line| line.starts_with("# ") && line.contains(LEFT));
+    let is_own = |file: BufReader<File>| {
+        let mut line = String::new();
+        // A file that is not this has a first line of any length.
+        file.take(400).read_line(&mut line).is_ok() && line.starts_with("# ") && line.contains(LEFT)
+    };
     if let Err(refused) = replace::may_replace(&options.out, is_own) {
         return complain(&refused);
     }

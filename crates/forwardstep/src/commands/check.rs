@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use forwardstep::check::{Id, PracticalAnswer, Report, certify};
-use forwardstep::io::output::{Findings, certificate_document};
+use forwardstep::io::output::{Findings, certificate_document, is_certificate};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 
@@ -64,10 +64,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
 
 /// Writes the answers with their proofs, and gives what is claimed without one. A waiver changes no answer.
 fn certificate(path: &Path, scenario: &Scenario, report: &Report) -> Result<Vec<&'static str>, Plain<String>> {
-    replace::may_replace(path, |head| {
-        let mut lines = head.lines();
-        lines.next() == Some("{") && lines.nth(1).is_some_and(|line| line.starts_with("  \"hypotheses\":"))
-    })?;
+    replace::may_replace(path, is_certificate)?;
     let certificate = certify(&scenario.setup, report);
     let mut unproven: Vec<_> =
         certificate.statements.iter().filter(|it| it.is_unproven()).map(|statement| statement.id.name()).collect();

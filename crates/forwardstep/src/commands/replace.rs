@@ -1,19 +1,16 @@
 //! Files that a command writes where the user says: what somebody else wrote there is never lost.
 
 use std::fs::{self, File};
-use std::io::{ErrorKind, Read};
+use std::io::{BufReader, ErrorKind};
 use std::path::Path;
 
 use forwardstep::io::shown;
 
 use crate::console::Plain;
 
-/// So much of a file tells what it is.
-const HEAD: u64 = 400;
-
-/// Checks that `path` can be written: nothing is there, or what `is_own` knows by its beginning as written by this command before. Asked
-/// before the work, so that none is lost.
-pub(super) fn may_replace(path: &Path, is_own: impl Fn(&str) -> bool) -> Result<(), Plain<String>> {
+/// Checks that `path` can be written: nothing is there, or what `is_own` knows as written by this command before. Asked before the
+/// work, so that none is lost.
+pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool) -> Result<(), Plain<String>> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         let said = format!("there is no folder `{}` to write `{}` into", shown(folder), shown(path));
@@ -24,9 +21,7 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(&str) -> bool) -> Result<
             Err(Plain::with_help(format!("`{}` is a folder", shown(path)), Some("name a file in it")))
         }
         Ok(found) if found.is_file() && found.len() > 0 => {
-            let mut head = Vec::new();
-            let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-            if read.is_ok() && is_own(&String::from_utf8_lossy(&head)) {
+            if File::open(path).is_ok_and(|file| is_own(BufReader::new(file))) {
                 return Ok(());
             }
             let said = format!("`{}` already exists, and this command did not write it", shown(path));

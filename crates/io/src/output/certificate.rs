@@ -3,10 +3,14 @@
 //! Numbers are whole, or stand in quotes as decimals or as p/q, so that no reader rounds them. Agents go by their names; phases
 //! and axes count from one.
 
+use std::io::Read;
+
 use forwardstep_check::certificate::{Certificate, Enclosure, Matrix, Proof, Range, Statement, TreeWindow, decimal};
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Edge;
 use num_rational::BigRational;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -14,6 +18,17 @@ use crate::scenario::Scenario;
 
 /// The format of certificates; it grows when fields change their meaning or vanish.
 pub const CERTIFICATE_FORMAT: u32 = 1;
+
+/// Whether this is a certificate, of whatever format.
+pub fn is_certificate(document: impl Read) -> bool {
+    #[derive(Deserialize)]
+    struct Told {
+        #[serde(rename = "hypotheses")]
+        _hypotheses: IgnoredAny,
+        producer: String,
+    }
+    serde_json::from_reader(document).is_ok_and(|told: Told| told.producer.starts_with("forwardstep "))
+}
 
 /// The document of `certificate`, which is that of `scenario`, made by `version` of forwardstep.
 pub fn certificate_document(scenario: &Scenario, version: &str, certificate: &Certificate) -> Value {

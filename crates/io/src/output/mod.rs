@@ -75,7 +75,7 @@ mod verdicts;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
-pub use certificate::{CERTIFICATE_FORMAT, certificate_document};
+pub use certificate::{CERTIFICATE_FORMAT, certificate_document, is_certificate};
 pub use comparison::{COMPARISON_FORMAT, Compared, ComparedCell, ComparedRow, ComparedRun, Comparison, RowGroup};
 pub use conclusion::Conclusion;
 pub use digital::{DigitalCost, Figures, continuous_twin};
