@@ -106,6 +106,13 @@ pub(crate) fn dwell_time(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::DwellTime, evidence)
 }
 
+/// Whether w_ij(t) never changes, as what (3) and (23) integrate asks for; delays may.
+pub(crate) fn laplacian_stays(setup: &Setup) -> bool {
+    let schedule = &setup.network.schedule;
+    let one_graph = schedule.constant_graph().is_some() || only_delays_change(schedule);
+    one_graph && varying_weights(setup).next().is_none()
+}
+
 /// Whether one graph stays for ever, as the reference dynamics that contain accelerations need. It may hear by other delays after a while.
 pub(crate) fn fixed_graph(setup: &Setup) -> Hypothesis {
     let schedule = &setup.network.schedule;

@@ -19,6 +19,7 @@ use forwardstep_sim::reference::{Consensus, PureIntegral};
 use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustLaw};
 use thiserror::Error;
 
+use crate::graphs::laplacian_stays;
 use crate::instance::designed;
 use crate::kinds::{is_its_own_reference, is_lagrangian};
 
@@ -140,9 +141,7 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
         return Err(NoCascade::Reference);
     }
-    let graph = setup.network.schedule.constant_graph();
-    let fixed = graph.is_some_and(|edges| edges.iter().all(|edge| edge.weight.constant().is_some()));
-    if setup.reference.is::<PureIntegral>() && !fixed {
+    if setup.reference.is::<PureIntegral>() && !laplacian_stays(setup) {
         return Err(NoCascade::PureIntegral);
     }
     if !setup.network.coupling.is_linear() {

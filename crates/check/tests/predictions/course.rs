@@ -77,7 +77,7 @@ fn regress_what_a_run_could_not_record_is_predicted_with_fewer_rows() {
 /// What (3) and (23) integrate over weights that change is not the law: the interval of all cascaded variables can grow.
 #[test]
 fn regress_3_and_23_have_no_interval_over_links_that_change() {
-    let mut setup = arms(Exchange::Position, 1);
+    let mut setup = arms(Exchange::Position, 2);
     setup.time.end_s = 5.0;
     setup.reference = Arc::new(PureIntegral);
     assert_eq!(predicted(&setup).within, Err(NoCascade::PureIntegral));

@@ -379,7 +379,7 @@ fn every_reason_for_no_guaranteed_rate_is_the_one_that_is_said() {
         setup.reference = Arc::new(PureIntegral);
         setup.network.schedule = five(Exchange::Position, 2, 1).network.schedule;
     };
-    assert_eq!(said(&switching), Some(NoGuaranteedRate::PureIntegral));
+    assert_eq!(said(&switching), Some(NoGuaranteedRate::Cascade(NoCascade::PureIntegral)));
     let many = |setup: &mut Setup| setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![1.0; 30].into());
     assert_eq!(said(&many), Some(NoGuaranteedRate::TooLarge { components: 155 }));
 }

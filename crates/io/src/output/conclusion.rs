@@ -268,7 +268,11 @@ mod tests {
     #[test]
     fn the_trend_is_that_of_the_last_quarters() {
         let of = |values: &[f64]| Trend::of(values);
-        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 4.0, 3.0, 2.0, 1.0]), Trend::Falls(0.5));
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 3.0, 4.0, 2.0, 1.0]), Trend::Falls(0.5));
+        // From row to row, by what is left at the ends.
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 4.0, 3.0, 2.0, 1.5]), Trend::Falls(0.5));
+        assert_eq!(of(&[8.0, 7.9, 7.8, 7.7, 7.6, 7.5, 7.4, 6.9]), Trend::Falls(0.92));
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 7.999]), Trend::Stays);
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 3.0, 2.9]), Trend::Stays);
         assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0]), Trend::Grows);
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");

@@ -94,9 +94,6 @@ pub enum NoGuaranteedRate {
         /// Index of the agent.
         agent: usize,
     },
-    /// What (3) and (23) integrate is not the law where the Laplacian changes.
-    #[error("(3) and (23) are for fixed graphs with constant weights")]
-    PureIntegral,
     /// There are more than the operator is followed for.
     #[error("there are {components} cascaded variables on an axis, more than {MOST_COMPONENTS}")]
     TooLarge {

@@ -2,7 +2,6 @@
 
 use forwardstep_core::expression::Interval;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{Exchange, Setup};
 
 use super::super::cascade;
@@ -73,10 +72,6 @@ impl Network {
         };
         let window_s = ideal.network.max_delay_s();
         let network = Network { ideal, first, kappa, sent, window_s };
-        let is_fixed = network.ideal.network.schedule.constant_graph().is_some() && network.has_constant_weights();
-        if network.ideal.reference.is::<PureIntegral>() && !is_fixed {
-            return Err(NoGuaranteedRate::PureIntegral);
-        }
         Ok(network)
     }
 
