@@ -344,7 +344,7 @@ impl Trace {
         let heard = held.iter().filter(|held| held.sent_s >= 0.0).count();
         let ends = held.iter().skip(1).map(|next| next.from_s).chain([t_s]);
         let largest_age_s = ends.zip(held).map(|(end_s, held)| end_s - held.sent_s.max(0.0)).fold(0.0, f64::max);
-        LinkStatistics { sent: sent.count(), lost, late: arrived - heard, largest_age_s }
+        LinkStatistics { sent: sent.count(), lost, late: arrived.saturating_sub(heard), largest_age_s }
     }
 
     fn clamped(&self, index: u64) -> usize {

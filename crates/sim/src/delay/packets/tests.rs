@@ -108,7 +108,7 @@ fn the_last_message_of_one_instant_counts() {
     let LinkStatistics { sent, lost, late, largest_age_s } = trace.statistics();
     assert_eq!((sent, lost, late), (4, 0, 1));
     assert!((largest_age_s - 2.5).abs() < 1e-12);
-    // Of a run that was stopped: 1.5 s old is what had been sent at the start.
+    // Of a run that was stopped: what was sent at the start is as old as the run.
     let LinkStatistics { sent, lost, late, largest_age_s } = trace.statistics_until(1.6);
     assert_eq!((sent, lost, late, largest_age_s), (3, 0, 0, 1.6));
     assert_eq!(trace.statistics_until(2.0).late, 1);
