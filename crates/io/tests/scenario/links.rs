@@ -233,6 +233,21 @@ fn every_mistake_in_a_log_is_reported_at_its_place() {
     as_stated(LOGS.iter().map(|(log, line, help)| ((*log).to_owned(), logged(log), *line, *help)));
 }
 
+/// The number next to sin π is positive.
+#[test]
+fn regress_a_weight_that_is_zero_but_for_rounding_is_refused() {
+    for zero in ["sin(pi)", "cos(pi/2)", "sqrt(2)^2 - 2"] {
+        let said = read(&changed("weight = 1.0", &format!("weight = \"{zero}\""))).unwrap_err().to_string();
+        assert!(
+            said.starts_with("test.toml:28:10: `weight` must be positive, but could only be shown"),
+            "{zero}: {said}"
+        );
+    }
+    for positive in ["sqrt(2)", "1e-12*pi", "0.3 - 0.2"] {
+        read(&changed("weight = 1.0", &format!("weight = \"{positive}\""))).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
 fn run(scenario: &Scenario, folder: &Path) -> Outcome {
     stopped_at(scenario, f64::INFINITY, folder)
 }
