@@ -115,7 +115,7 @@ impl Upper {
 
     /// Whether a quantity is q of some agent.
     pub(super) fn is_state(&self, quantity: Quantity) -> bool {
-        quantity.letter == self.state && !matches!(quantity.vertex, Vertex::Leader | Vertex::LateLeader)
+        quantity.letter == self.state && !quantity.vertex.is_leader()
     }
 }
 

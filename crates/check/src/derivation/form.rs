@@ -33,6 +33,18 @@ pub enum Vertex {
     LateLeader,
 }
 
+impl Vertex {
+    /// Whether it is taken at t − T_ij(t).
+    pub fn is_heard(self) -> bool {
+        matches!(self, Vertex::Neighbour | Vertex::LateLeader)
+    }
+
+    /// Whether it is the leader, now or then.
+    pub fn is_leader(self) -> bool {
+        matches!(self, Vertex::Leader | Vertex::LateLeader)
+    }
+}
+
 /// A signal, or a nonlinear term that stands for itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Letter {

@@ -56,7 +56,7 @@ impl Notation {
     }
 
     fn letter(&self, letter: Letter, vertex: Vertex, k: usize) -> Formula {
-        let at = if matches!(vertex, Vertex::Neighbour | Vertex::LateLeader) { self.heard } else { At::Now };
+        let at = if vertex.is_heard() { self.heard } else { At::Now };
         let index = self.index(vertex);
         let symbol = |base| Symbol::new(base).below(index).derivative(k).at(at);
         let formula = match letter {
@@ -94,7 +94,7 @@ impl Notation {
 
     /// A variable by its name, or its k-th derivative.
     pub fn name(&self, name: Name, vertex: Vertex, k: usize) -> Formula {
-        let at = if matches!(vertex, Vertex::Neighbour | Vertex::LateLeader) { self.heard } else { At::Now };
+        let at = if vertex.is_heard() { self.heard } else { At::Now };
         let index = self.index(vertex);
         let numbered = |base, r: usize| {
             let below = if index.is_empty() { r.to_string() } else { format!("{index},{r}") };

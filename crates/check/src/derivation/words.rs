@@ -285,7 +285,7 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         ),
         Led::Leader(..) if case.heard() != At::Now => format!(
             "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, until it is as \
-             small as the delays let it be: what the leader does meanwhile nobody has heard. {bounded}, and {q}_i − {q}_0 stays within what \
+             small as the delays let it be: what the leader does meanwhile has not been heard yet. {bounded}, and {q}_i − {q}_0 stays within what \
              `forwardstep check` says."
         ),
         Led::Leader(..) => format!(

@@ -121,12 +121,15 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
     let [start_j, end_j] = [all.iter().map(|own| own.start_j).sum::<f64>(), all.iter().map(|own| own.end_j).sum()];
     // The z of backstepping jumps where a message does, and V with it, however short periods are.
     let backstepping = setup.reference.is::<Backstepping>();
-    let with_jumps = |cause| backstepping && cause == Injection::Held.name();
+    let named = |cause: &str| {
+        let jumps = backstepping && cause == Injection::Held.name();
+        format!("{cause}{}", if jumps { ", with jumps of z," } else { "" })
+    };
     let terms = Injection::ALL.map(|cause| (cause.name(), all.iter().map(|own| own.term_j(cause)).sum::<f64>()));
     let mut terms: Vec<String> = terms
         .into_iter()
         .filter(|(_, energy_j)| *energy_j != 0.0)
-        .map(|(name, energy_j)| format!("{name}{} {}", if with_jumps(name) { JUMPS } else { "" }, short(energy_j)))
+        .map(|(name, energy_j)| format!("{} {}", named(name), short(energy_j)))
         .collect();
     if all.is_empty() || terms.is_empty() {
         return Vec::new();
@@ -141,16 +144,13 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
     let first = match Injected::earliest(all) {
         None => "nothing that put in 1 % of V".to_owned(),
         Some((own, FirstInjection { cause, t_s })) => {
-            let jumps = if with_jumps(cause) { JUMPS } else { "" };
-            format!("first {cause}{jumps}, {} at {t_s:.2} s", agent_name(setup, own.agent))
+            format!("first {}, {} at {t_s:.2} s", named(cause), agent_name(setup, own.agent))
         }
     };
     let changed = format!("{} to {} J: {}", short(start_j), short(end_j), terms.join(", "));
     vec![("V of all agents", changed), ("beyond the proof", first)]
 }
 
-/// What is counted beside holding under backstepping.
-const JUMPS: &str = ", with jumps of z,";
 /// Of the largest term and of V, what is not accounted for is said above this share.
 const UNEXPLAINED: f64 = 1e-3;
 

@@ -171,7 +171,7 @@ impl Trend {
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
     let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
-    let stopped = matches!(record.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. });
+    let stopped = record.outcome.ending.before_horizon_s().is_some();
     if let (Trend::Falls(left), Some(last_t_s)) = (trend, metrics.last_t_s) {
         // What falls fast at first slows down to what the design does by itself, where that is known.
         let more_s = (last_t_s * share.ln() / left.ln() / 4.0).max(takes_s.unwrap_or(0.0));
