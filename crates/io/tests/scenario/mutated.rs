@@ -17,6 +17,7 @@ use super::spacecraft::SPACECRAFT;
 use super::tips::{PLANAR, TIP};
 use super::vehicles::VEHICLES;
 use super::{SOUND, read};
+use crate::support::some;
 
 /// Every sound scenario that tests change.
 pub(super) const SYSTEMS: [&str; 14] = [
@@ -48,7 +49,9 @@ fn survives(text: &str) {
             let _ = forwardstep_check::predict(&scenario.setup);
             let _ = forwardstep_check::ideal(&scenario.setup);
             let outcome = forwardstep_sim::simulate(&scenario.setup, &mut |_| ControlFlow::Break(()));
-            assert!(outcome.is_ok(), "{:?} of\n{text}", outcome.err());
+            // What no run could record is refused by runs alone.
+            let recorded = forwardstep_sim::check_recording(&scenario.setup).is_ok();
+            assert_eq!(outcome.is_ok(), recorded, "{:?} of\n{text}", outcome.err());
         }
         Err(error) => shown(&error),
     }
@@ -72,7 +75,7 @@ fn prop_every_prefix_gives_a_result() {
 fn prop_every_line_may_be_missing_or_doubled() {
     for text in texts() {
         let lines: Vec<&str> = text.lines().collect();
-        for k in 0..lines.len() {
+        for k in some(0..lines.len(), 8) {
             survives(&[&lines[..k], &lines[k + 1..]].concat().join("\n"));
             survives(&[&lines[..=k], &lines[k..]].concat().join("\n"));
         }
