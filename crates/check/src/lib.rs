@@ -42,8 +42,8 @@ pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
     AgreementBound, Along, AxisBound, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch,
     LinearisedSampling, LoadReached, MarginAt, MarginReached, NAMED_SHARE, NoReferenceGains, Over, PowerBound,
-    PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains, SamplingMargin, StaticLoad, along,
-    fastest_damping, mean_power_w, practical,
+    PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains, SamplingMargin, StaticLoad,
+    WholeLoop, along, fastest_damping, mean_power_w, practical,
 };
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;

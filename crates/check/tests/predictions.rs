@@ -10,6 +10,7 @@ mod rubbing;
 mod smoothness;
 mod start;
 mod vehicles;
+mod whole_loop;
 
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;
@@ -234,6 +235,7 @@ fn bound(setup: &Setup) -> Option<PowerBound> {
         Finding::TrackingPower(bound) => Some(bound),
         Finding::SamplingMargin(_)
         | Finding::LinearisedSampling(_)
+        | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
         | Finding::TrackingDisagreement(_) => None,
     })
@@ -342,7 +344,7 @@ fn eq_noise_feeds_the_power_that_its_filter_lets_through() {
     assert_eq!(noise_w(|_| {}), 0.0);
     // tr K is 16, of two agents.
     assert!((noise_w(|control| control.sensors.velocity_noise = 0.01) - 32.0 * 1e-4).abs() < 1e-12);
-    assert!((noise_w(|control| control.sensors.velocity_quantum = 0.012) - 32.0 * 12e-6).abs() < 1e-12);
+    assert!((noise_w(|control| control.sensors.velocity_quantum = 0.012) - 32.0 * 36e-6).abs() < 1e-12);
     let filtered = noise_w(|control| {
         control.sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 60.0 };
         control.sensors.position_noise = 3e-4;
@@ -431,12 +433,15 @@ fn an_arm_that_its_motors_cannot_hold_is_told() {
     setup.agents[1].robot.axes[0].effort_limit = Some(1e3);
     assert_eq!(said(&setup).unwrap().1, "adequate");
     // Those of the actuators count where they are tighter.
+    let load_of = |setup: &Setup| -> Finding {
+        practical(setup).findings.into_iter().find(|finding| finding.name() == "static-load").unwrap()
+    };
     setup = setup.sampled(500.0);
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![1e3, 0.5]);
-    let load = practical(&setup).findings.swap_remove(1);
+    let load = load_of(&setup);
     assert!(load.answer().words() == "inadequate" && load.because().contains(" of 0.5 (arm-"), "{load:?}");
     // And where both limit one axis, the tighter of them.
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![3.0, 1e3]);
-    let load = practical(&setup).findings.swap_remove(1);
+    let load = load_of(&setup);
     assert!(load.because().contains(" of 3 (arm-2, shoulder)"), "{load:?}");
 }

@@ -103,16 +103,22 @@ fn practical_verdicts_stand_beside_the_hypotheses_and_count_where_they_are_asked
     for (hz, answer) in [(500, "adequate"), (6, "marginal"), (3, "inadequate")] {
         let document = found(hz, &[], 0);
         let verdicts = document["practical"]["verdicts"].as_array().unwrap();
-        let [sampling, load, agreement] = verdicts.as_slice() else { panic!("{verdicts:?}") };
+        let with_id = |id: &str| verdicts.iter().find(|verdict| verdict["id"] == id);
+        let [sampling, load] = ["sampling-margin", "static-load"].map(|id| with_id(id).unwrap());
         assert_eq!((&sampling["id"], &sampling["answer"]), (&"sampling-margin".into(), &answer.into()), "{sampling}");
         assert_eq!((&load["id"], &load["answer"]), (&"static-load".into(), &"adequate".into()), "{load}");
-        let gain = agreement["numbers"]["rms_gain_s"].as_f64().unwrap();
-        assert_eq!(
-            (&agreement["id"], &agreement["answer"]),
-            (&"tracking-disagreement".into(), &"bound".into()),
-            "{agreement}"
-        );
-        assert!(gain > 0.0 && agreement["because"].as_str().unwrap().contains("RMS disagreement ≤ "), "{agreement}");
+        // What grows has no bound.
+        let grows = with_id("whole-loop").unwrap()["answer"] == "inadequate";
+        assert!(!grows || hz == 3, "{verdicts:?}");
+        assert_eq!(with_id("tracking-disagreement").is_none(), grows, "{verdicts:?}");
+        if let Some(agreement) = with_id("tracking-disagreement") {
+            let gain = agreement["numbers"]["rms_gain_s"].as_f64().unwrap();
+            assert_eq!(agreement["answer"], "bound", "{agreement}");
+            assert!(
+                gain > 0.0 && agreement["because"].as_str().unwrap().contains("RMS disagreement ≤ "),
+                "{agreement}"
+            );
+        }
         assert_eq!(document["practical"]["worst"], answer);
         let sigma = sampling["numbers"]["sigma"].as_f64().unwrap();
         let longest_s = sampling["numbers"]["longest_period_s"].as_f64().unwrap();

@@ -10,9 +10,10 @@ use forwardstep_sim::{Evaluator, Setup};
 use nalgebra::DVector;
 
 use super::held::Hold;
+use super::led::Led;
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
-use super::power::{PowerBound, is_fed, noise_w_of, pushed_w, steps_w_of};
+use super::power::{PowerBound, held_w_of, is_fed, noise_w_of, pushed_w, steps_w_of};
 use super::rates::{Gains, Rates};
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
@@ -123,7 +124,8 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
     let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
     let span_s = last_s - first_s;
     let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
-    let (mut noise_w, mut steps_w, mut friction_w) = (0.0, 0.0, 0.0);
+    let (mut noise_w, mut steps_w, mut held_w, mut friction_w) = (0.0, 0.0, 0.0, 0.0);
+    let looked = self::rows(rows, setup.agents.len());
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
         let axes = gains.damping.nrows();
@@ -144,11 +146,19 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         start_j = start_j.zip(energy_j).map(|(all, own)| all + own);
         noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
         steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
+        let state = |&row: &usize| {
+            let signal = |signal| columns.at(agent, signal, axes, row);
+            let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
+            Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz? })
+        };
+        let way: Vec<Led> = looked.iter().filter_map(state).collect();
+        let own = &setup.agents[agent];
+        held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;
         agents += 1;
     }
     let parts = |(start_j, push_w): (f64, f64)| {
         let start_w = start_j / span_s;
-        PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, friction_w, sigma, mean_w: f64::NAN }
+        PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, friction_w, sigma, mean_w: f64::NAN }
             .worked_out()
     };
     (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(parts) })

@@ -92,8 +92,12 @@ impl Hold {
 
     /// ℓ, by how many periods what is learnt acts later than with measured velocities and commands that act at once.
     pub(super) fn lag(self, period_s: f64) -> f64 {
-        let filter = self.cut_off_rad_s.map_or(0.0, |cut_off_rad_s| 0.5 + 1.0 / libm::expm1(cut_off_rad_s * period_s));
-        self.delay_s / period_s + filter
+        self.delay_s / period_s + self.filter_lag(period_s)
+    }
+
+    /// How many periods ago the velocity was that a filter gives; zero where it is measured.
+    pub(super) fn filter_lag(self, period_s: f64) -> f64 {
+        self.cut_off_rad_s.map_or(0.0, |cut_off_rad_s| 0.5 + 1.0 / libm::expm1(cut_off_rad_s * period_s))
     }
 
     /// The largest multiplier of a period by its size, with Y frozen: of M⁻¹ K and of M⁻¹ P; `None` where it is not found.

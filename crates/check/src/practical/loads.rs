@@ -9,6 +9,7 @@ use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{Evaluator, Setup};
 
 use super::PracticalAnswer;
+use super::led::states;
 use super::postures::each_posture;
 use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
@@ -36,7 +37,7 @@ impl StaticLoad {
         let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| limits(setup, *agent).is_some()).collect();
         let mut worst: Option<StaticLoad> = None;
         let (mut postures, mut evaluators) = (0, HashMap::new());
-        each_posture(setup, &those, |agent, q, _| {
+        let mut look = |agent: usize, q: &[f64]| {
             postures += 1;
             let robot = &setup.agents[agent].robot.kind;
             let evaluator =
@@ -46,7 +47,10 @@ impl StaticLoad {
                 (Some(worst), Some(found)) => Some(if found.share() > worst.share() { found } else { worst }),
                 (worst, found) => worst.or(found),
             };
-        });
+        };
+        each_posture(setup, &those, |agent, q, _| look(agent, q));
+        // A way may lead where no start is.
+        states(setup, &those).iter().for_each(|led| look(led.agent, &led.q));
         worst.map(|found| StaticLoad { postures, ..found })
     }
 

@@ -9,6 +9,7 @@
 //! - `margin`: the sampling margin σ before a run.
 //! - `led`: states that references lead robots through, at which it looks.
 //! - `linearised`: the same for one agent of any other kind, by differences.
+//! - `looped`: agents under (6)–(7) with their references, and what neighbours tell.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
@@ -25,6 +26,7 @@ mod injected;
 mod led;
 mod linearised;
 mod loads;
+mod looped;
 mod margin;
 mod postures;
 mod power;
@@ -42,6 +44,7 @@ pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
 pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
+pub use looped::WholeLoop;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
 pub(crate) use power::{is_fed, start_energy_j};
@@ -83,6 +86,8 @@ pub enum Finding {
     SamplingMargin(SamplingMargin),
     /// Whether the fast modes of agents outside (6)–(7) decay from sample to sample.
     LinearisedSampling(LinearisedSampling),
+    /// Whether agents under (6)–(7) decay with all that is around s.
+    WholeLoop(WholeLoop),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
     /// How large s stays.
@@ -97,6 +102,7 @@ impl Finding {
         match self {
             Finding::SamplingMargin(_) => "sampling-margin",
             Finding::LinearisedSampling(_) => "linearised-sampling",
+            Finding::WholeLoop(_) => "whole-loop",
             Finding::StaticLoad(_) => "static-load",
             Finding::TrackingPower(_) => "tracking-power",
             Finding::TrackingDisagreement(_) => "tracking-disagreement",
@@ -108,6 +114,7 @@ impl Finding {
         match self {
             Finding::SamplingMargin(margin) => margin.answer(),
             Finding::LinearisedSampling(found) => found.answer(),
+            Finding::WholeLoop(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
             Finding::TrackingPower(_) => PracticalAnswer::Bound,
             Finding::TrackingDisagreement(bound) => bound.answer(),
@@ -135,12 +142,20 @@ impl Finding {
             Finding::LinearisedSampling(found) => {
                 vec![("radius", found.radius), ("leftmost", found.leftmost), ("period_s", found.period_s)]
             }
+            Finding::WholeLoop(found) => {
+                let [rate, ideal] = found.rate_per_s;
+                let mut all = vec![("rate_per_s", rate), ("ideal_rate_per_s", ideal), ("period_s", found.period_s)];
+                all.extend(found.network_rate_per_s.map(|[rate, _]| ("network_rate_per_s", rate)));
+                all.extend(found.passed_on.map(|[part, _]| ("passed_on", part)));
+                all
+            }
             Finding::TrackingPower(bound) => vec![
                 ("mean_w", bound.mean_w),
                 ("start_w", bound.start_w),
                 ("push_w", bound.push_w),
                 ("noise_w", bound.noise_w),
                 ("steps_w", bound.steps_w),
+                ("held_w", bound.held_w),
                 ("friction_w", bound.friction_w),
                 ("span_s", bound.span_s),
             ],
@@ -175,10 +190,14 @@ pub fn practical(setup: &Setup) -> Practical {
     let setup = designed.as_ref().unwrap_or(setup);
     let margin = SamplingMargin::of(setup);
     let load = StaticLoad::of(setup).map(Finding::StaticLoad);
-    let power = PowerBound::of(setup, margin.as_ref());
+    let whole = WholeLoop::of(setup);
+    // What grows has no bound.
+    let grows = whole.as_ref().is_some_and(|whole| whole.answer() == PracticalAnswer::Inadequate);
+    let power = PowerBound::of(setup, margin.as_ref()).filter(|_| !grows);
     let margin = margin.map(Finding::SamplingMargin);
-    let agreement = AgreementBound::of(setup, power.as_ref()).map(Finding::TrackingDisagreement);
+    let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);
     let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);
-    Practical { findings: margin.into_iter().chain(linearised).chain(load).chain(power).chain(agreement).collect() }
+    let whole = whole.map(Finding::WholeLoop);
+    Practical { findings: [margin, linearised, whole, load, power, agreement].into_iter().flatten().collect() }
 }

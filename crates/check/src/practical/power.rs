@@ -14,12 +14,16 @@
 //! ```
 //!
 //! For several agents all of it adds up. Sampled, V loses (1 − σ) sᵀKs in place of sᵀKs (`rates`), which is to be put for K throughout:
-//! then x² ≤ (½ D + √(¼ D² + (1 − σ)(E + V(t₀)/T)))² / (1 − σ)². What the plant does between samples is left out, which vanishes at rest.
+//! then x² ≤ (½ D + √(¼ D² + (1 − σ)(E + V(t₀)/T)))² / (1 − σ)².
+//!
+//! A torque that is held is that of its sample, δ h late, while the motion asks for w = M ż + C z + g as it is now: over a period
+//! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
+//! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest.
 //!
 //! A velocity that is measured with an error n makes d = −K n, so that D² is the mean of nᵀKn: tr K times the mean square of an entry. That
-//! of a step Δ of rounding is Δ²/12. Filtered differences of positions, a = e^(−ωh), with an error e of variance e² at every sample,
+//! of a step Δ of rounding is Δ²/4, since a robot that hardly moves stays within one step; of positions, whose differences count, Δ²/12. Filtered differences of positions, a = e^(−ωh), with an error e of variance e² at every sample,
 //! have n = (1 − a) Σ_j aʲ (e_{k−j} − e_{k−j−1})/h, whose mean square is 2 e² (1 − a)²/(h² (1 + a)). n enters the adaptation too, as −nᵀYΔϑ,
-//! whose mean is zero since Y is one sample older; and a filter lags, which is left out. With noise the bound is thus one to be
+//! whose mean is zero since Y is one sample older. With noise the bound is thus one to be
 //! expected, not one for certain.
 //!
 //! Dry friction F σ, σ ∈ Sgn q̇, which the law takes for F tanh(z/ε), feeds V by κ ε F at every joint at most, κ = max x (1 − tanh x)
@@ -31,13 +35,16 @@ use forwardstep_sim::{Adaptive, AgentSetup, Control, ReferenceFamily, Setup, Vel
 use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
+use super::led::{Led, states};
 use super::margin::SamplingMargin;
 use super::rates::{Gains, dynamics};
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
-/// Mean square of what rounding to multiples of one does.
+/// Mean square of what rounding to multiples of one does to what moves over many of them.
 const ROUNDING: f64 = 1.0 / 12.0;
+/// Its largest square, which is that of a velocity that stays within one step: a robot that hardly moves.
+const WITHIN: f64 = 0.25;
 
 /// What feeds Σ V of all agents under (6)–(7), and what Σ sᵀKs is at most on the average over a span.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +61,8 @@ pub struct PowerBound {
     pub noise_w: f64,
     /// D² of torques that come in steps, W.
     pub steps_w: f64,
+    /// D² of torques that are held and velocities that are filtered while robots move as their references ask, W.
+    pub held_w: f64,
     /// E, which dry friction feeds at most, W.
     pub friction_w: f64,
     /// σ; zero in continuous time.
@@ -80,8 +89,10 @@ impl PowerBound {
             return None;
         }
         let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
-        let (mut noise_w, mut steps_w) = (0.0, 0.0);
+        let (mut noise_w, mut steps_w, mut held_w) = (0.0, 0.0, 0.0);
         let span_s = setup.time.end_s;
+        let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
+        let led = if setup.control.is_some() { states(setup, &those) } else { Vec::new() };
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
             start_j += start_energy_j(setup, index, &gains)?;
@@ -89,12 +100,25 @@ impl PowerBound {
             friction_w += dry_loss_w(agent).unwrap_or(0.0);
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
             steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
+            let way: Vec<Led> = led.iter().filter(|state| state.agent == index).cloned().collect();
+            held_w +=
+                setup.control.as_ref().map_or(Some(0.0), |control| held_w_of(control, agent, &gains, &way, span_s))?;
             agents += 1;
         }
         let sigma = if setup.control.is_some() { margin?.worst.sigma } else { 0.0 };
         let start_w = start_j / span_s;
-        let parts =
-            PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, friction_w, sigma, mean_w: f64::NAN };
+        let parts = PowerBound {
+            agents,
+            span_s,
+            start_w,
+            push_w,
+            noise_w,
+            steps_w,
+            held_w,
+            friction_w,
+            sigma,
+            mean_w: f64::NAN,
+        };
         (agents > 0).then(|| parts.worked_out()).flatten()
     }
 
@@ -106,7 +130,7 @@ impl PowerBound {
     /// The same with [`PowerBound::mean_w`]: the D of pushes, of noise and of steps add up, at worst. `None` where it is not finite, and where it
     /// is zero: then what is left out is all there is.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
-        let drive = self.push_w.sqrt() + self.noise_w.sqrt() + self.steps_w.sqrt();
+        let drive = self.push_w.sqrt() + self.noise_w.sqrt() + self.steps_w.sqrt() + self.held_w.sqrt();
         let mean_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
         (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
     }
@@ -121,14 +145,14 @@ pub(crate) fn is_fed(setup: &Setup) -> bool {
 /// D² of the measurement errors of an agent, W.
 pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
     let sensors = &control.sensors;
-    let square = |noise: f64, quantum: f64| noise * noise + ROUNDING * quantum * quantum;
+    let square = |noise: f64, quantum: f64, share: f64| noise * noise + share * quantum * quantum;
     let mean_square = match sensors.velocity {
-        VelocitySensor::Measured => square(sensors.velocity_noise, sensors.velocity_quantum),
+        VelocitySensor::Measured => square(sensors.velocity_noise, sensors.velocity_quantum, WITHIN),
         VelocitySensor::Filtered { .. } => {
             let omega_h = Hold::of(control).cut_off_rad_s.unwrap_or(f64::INFINITY) / control.sample_hz;
             let quick = -libm::expm1(-omega_h);
             let rate = quick * control.sample_hz;
-            square(sensors.position_noise, sensors.position_quantum) * 2.0 * rate * rate / (2.0 - quick)
+            square(sensors.position_noise, sensors.position_quantum, ROUNDING) * 2.0 * rate * rate / (2.0 - quick)
         }
     };
     mean_square * gains.damping.trace()
@@ -139,6 +163,33 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
 pub(super) fn steps_w_of(control: &Control, gains: &Gains) -> Option<f64> {
     let half = 0.5 * control.actuators.torque_quantum;
     Some(half * half * gains.damping.clone().cholesky()?.inverse().abs().sum())
+}
+
+/// D² of torques that are held and velocities that are filtered along these states of an agent, in the order of time, as the mean over a
+/// span, W; `None` where K cannot be inverted.
+pub(super) fn held_w_of(control: &Control, agent: &AgentSetup, gains: &Gains, way: &[Led], span_s: f64) -> Option<f64> {
+    let (hold, period_s) = (Hold::of(control), 1.0 / control.sample_hz);
+    let late = hold.delay_s / period_s;
+    let since = period_s * period_s * (1.0 / 3.0 + late + late * late);
+    let lag_s = hold.filter_lag(period_s) * period_s;
+    let compliance = gains.damping.clone().cholesky()?.inverse();
+    let asked = |state: &Led| {
+        let found = dynamics(agent, &state.q, &state.dq, &state.dz)?;
+        let theta = DVector::from_column_slice(&agent.robot.theta);
+        Some(DMatrix::from_row_slice(state.q.len(), theta.len(), &found.regressor) * theta)
+    };
+    let (mut held, mut lagging) = (0.0, 0.0);
+    for pair in way.windows(2) {
+        let [one, next] = pair else { continue };
+        let took_s = next.t_s - one.t_s;
+        let Some((from, to)) = asked(one).zip(asked(next)).filter(|_| took_s > 0.0) else { continue };
+        let rate = (to - from) / took_s;
+        held += took_s * since * rate.dot(&(&compliance * &rate));
+        let ddq = DVector::from_column_slice(&one.dz);
+        lagging += took_s * lag_s * lag_s * ddq.dot(&(&gains.damping * &ddq));
+    }
+    let drive = (held / span_s).sqrt() + (lagging / span_s).sqrt();
+    Some(drive * drive)
 }
 
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.

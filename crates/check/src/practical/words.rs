@@ -2,7 +2,7 @@
 
 use super::{
     AgreementBound, AxisBound, Finding, LinearisedSampling, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN,
-    ReferenceGains, SamplingMargin, StaticLoad,
+    ReferenceGains, SamplingMargin, StaticLoad, WholeLoop,
 };
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
@@ -11,6 +11,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
     match finding {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
         Finding::LinearisedSampling(_) => "agents under other laws sample fast enough",
+        Finding::WholeLoop(_) => "agents decay with their references and what they hear",
         Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
         Finding::TrackingPower(_) => "how large s stays",
         Finding::TrackingDisagreement(_) => "what s adds to the disagreement",
@@ -22,6 +23,7 @@ pub(super) fn because(finding: &Finding) -> String {
     match finding {
         Finding::SamplingMargin(margin) => sampling(margin),
         Finding::LinearisedSampling(found) => linearised(found),
+        Finding::WholeLoop(found) => whole(found),
         Finding::StaticLoad(load) => standing(load),
         Finding::TrackingPower(bound) => power(bound),
         Finding::TrackingDisagreement(bound) => agreement(bound),
@@ -73,15 +75,18 @@ fn too_slow(SamplingMargin { start, worst, .. }: &SamplingMargin) -> &'static st
 
 fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &StaticLoad) -> String {
     let (torque, limit) = (rounded(*torque), rounded(*limit));
-    let those =
-        if *postures == 1 { "at the start".into() } else { format!("of {postures} postures between the starts") };
+    let those = if *postures == 1 {
+        "at the start".into()
+    } else {
+        format!("of {postures} postures between the starts and on the way")
+    };
     format!("the largest share of a limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
 }
 
 fn power(bound: &PowerBound) -> String {
-    let PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, friction_w, sigma, mean_w } = *bound;
+    let PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, friction_w, sigma, mean_w } = *bound;
     let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
-    // Sampled, what the plant does between samples is left out.
+    // Sampled, what the plant does between samples is taken along the references.
     let kind = if bound.is_expected() { "is expected to be at most" } else { "is at most" };
     let part = |name: &str, value: f64| match value {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
@@ -89,12 +94,13 @@ fn power(bound: &PowerBound) -> String {
     };
     let sampled = if sigma > 0.0 { format!(", with σ = {}", rounded(sigma)) } else { String::new() };
     format!(
-        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{sampled}",
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{sampled}",
         rounded_up(mean_w),
         rounded_up(start_w),
         part("pushes", push_w),
         part("measurement errors", noise_w),
         part("steps of the torque", steps_w),
+        part("torques that are held and velocities that lag while they move", held_w),
         part("dry friction", friction_w),
     )
 }
@@ -174,6 +180,27 @@ fn linearised(found: &LinearisedSampling) -> String {
         }
     };
     format!("linearised at the start ({}{of}), with a period of {period} ms: {meaning}", agent.name)
+}
+
+fn whole(found: &WholeLoop) -> String {
+    let WholeLoop { agent, period_s, agents, of: all, .. } = found;
+    let of = match (*agents, *all) {
+        (1, 1) => String::new(),
+        (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
+    };
+    let meaning = match (found.growth_per_s(), found.amplified()) {
+        (Some(rate), _) => {
+            let (rate, ideal) = (rounded(rate), "where velocities were measured and samples fast, it would not");
+            format!("a mode grows at {rate}/s; {ideal}: sample faster, filter less, or let the roots be slower")
+        }
+        (None, Some(part)) => format!(
+            "what is heard is passed on up to {} times as large, so that in some networks with such weights a mode grows: sample \
+             faster, filter less, or let roots and weights be smaller",
+            rounded(part)
+        ),
+        (None, None) => "no mode grows that would not in continuous time".to_owned(),
+    };
+    format!("linearised at the start ({}{of}), with a period of {} ms: {meaning}", agent.name, rounded(1e3 * period_s))
 }
 
 /// What else there is between a sample and its torque.

@@ -221,6 +221,7 @@ fn bound(setup: &Setup) -> Option<AgreementBound> {
         Finding::TrackingDisagreement(bound) => Some(bound),
         Finding::SamplingMargin(_)
         | Finding::LinearisedSampling(_)
+        | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
         | Finding::TrackingPower(_) => None,
     })
@@ -316,6 +317,7 @@ fn what_s_adds_is_said_with_its_numbers() {
         Finding::TrackingPower(power) => Some(power.mean_w),
         Finding::SamplingMargin(_)
         | Finding::LinearisedSampling(_)
+        | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
         | Finding::TrackingDisagreement(_) => None,
     });

@@ -14,6 +14,8 @@ use super::metrics::{Disagreement, Metrics};
 
 /// The run that others are compared with has a period this much shorter than the rule.
 const FINER: f64 = 8.0;
+/// Where that one does not come closer, so many shorter ones by the same factor are tried.
+const SHORTER: u32 = 3;
 /// A run whose |s| is this much larger than in that one, and larger than its |z|, does not work. Where s is zero without sampling, sampling
 /// alone makes it, as much as the period is long.
 const LARGER: f64 = 2.0;
@@ -141,11 +143,27 @@ impl SamplingLimit {
             watch(trial);
             Ok::<Trial, SetupError>(trial)
         };
-        let first = run(first_s)?;
+        // One that does not come closer is no measure for others: the rule knows s alone, and what is around it may need shorter periods.
+        let settles = |trial: Trial| {
+            let closer = trial.initial == 0.0 || trial.remains <= trial.initial;
+            trial.remains.is_finite() && (closer || accepted.remains.is_some())
+        };
+        let (mut first_s, mut first) = (first_s, run(first_s)?);
+        for _ in 0..SHORTER {
+            let shorter_s = (first_s / FINER).max(1.001 * deployment.delay_s(setup, first_s / FINER));
+            if settles(first) || shorter_s >= first_s {
+                break;
+            }
+            (first_s, first) = (shorter_s, run(shorter_s)?);
+        }
         let peak_error = accepted.peak_error.unwrap_or((LARGER * first.peak_error).max(first.peak_reference));
         let remains = accepted.remains.unwrap_or((LARGER * first.remains).max(REMAINS * first.initial));
         let works = |trial: Trial| trial.peak_error <= peak_error && trial.remains <= remains;
-        let measured_s = if works(first) { Some(bisect(first_s, |period_s| Ok(works(run(period_s)?)))?) } else { None };
+        let measured_s = if settles(first) && works(first) {
+            Some(bisect(first_s, |period_s| Ok(works(run(period_s)?)))?)
+        } else {
+            None
+        };
         Ok(SamplingLimit { rule, measured_s, peak_error, remains, trials })
     }
 }

@@ -58,6 +58,6 @@ pub use probe::probe_balance;
 pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;
-pub use sampled_map::{SampledJacobian, sampled_jacobian};
+pub use sampled_map::{SampledJacobian, SampledLoop, sampled_jacobian, sampled_loop};
 pub use valid::validate;
 pub use velocity_quantity::VelocityQuantity;

@@ -3,7 +3,8 @@
 //! The state of the map is that of the plant and of the controller at a sample, as the sampled controller carries it on, and the
 //! command before where commands come late. Everything else that a controller remembers of its last sample follows from these: built
 //! anew from its recipe with that state, it takes the sample again. The map is that of the run itself, with exact measurements, no
-//! limits and no pushes; the agent is by itself and hears nothing.
+//! limits and no pushes; the agent is by itself, and what it hears is put in. Where a filter stands for the velocities, what it gives
+//! is state of the map: it goes a part of 1 − e^(−ωh) to the difference of positions over a period.
 
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
@@ -11,6 +12,7 @@ use super::error::SetupError;
 use super::probe::alone_under;
 use super::recipes::built;
 use super::valid::message_len;
+use crate::Signal;
 use crate::network::Network;
 use crate::schedule::Schedule;
 use crate::setup::{Actuators, Control, Failures, Sensors, Setup, Solver, VelocitySensor};
@@ -29,17 +31,49 @@ pub struct SampledJacobian {
     pub entries: Vec<f64>,
 }
 
+/// The same of an agent in its network, and how what it tells and what it hears enter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledLoop {
+    /// Of an agent whose neighbours stay where they are.
+    pub own: SampledJacobian,
+    /// Numbers in a message.
+    pub message: usize,
+    /// How its message depends on its state: `message` rows.
+    pub tells: Vec<f64>,
+    /// How the state at a sample depends on the mean of what is heard at the sample before and at the same: `message` columns.
+    pub hears: [Vec<f64>; 2],
+}
+
 /// The Jacobian of one period of agent `index` of `setup`, at its start; `None` when control is continuous, where velocities are
 /// filtered differences, whose memory is not part of the state, and where something is not finite.
 ///
 /// # Errors
 /// [`SetupError`] when the law cannot build the agent.
 pub fn sampled_jacobian(setup: &Setup, index: usize) -> Result<Option<SampledJacobian>, SetupError> {
-    let (Some(control), Some(own)) = (&setup.control, setup.agents.get(index)) else { return Ok(None) };
-    match control.sensors.velocity {
-        VelocitySensor::Measured => {}
-        VelocitySensor::Filtered { .. } => return Ok(None),
+    match setup.control.as_ref().map(|control| control.sensors.velocity) {
+        Some(VelocitySensor::Measured) => Ok(linearised(setup, index, 0.0)?.map(|found| found.own)),
+        Some(VelocitySensor::Filtered { .. }) | None => Ok(None),
     }
+}
+
+/// One period of agent `index` of `setup`, at its start, where it hears others with weights that sum to `degree` and agrees with them. Behind
+/// the state of plant and controller stand what a filter gives for the velocities, where they are filtered, and the command before, where
+/// it comes late. `None` when control is continuous, and where something is not finite.
+///
+/// # Errors
+/// [`SetupError`] when the law cannot build the agent.
+pub fn sampled_loop(setup: &Setup, index: usize, degree: f64) -> Result<Option<SampledLoop>, SetupError> {
+    linearised(setup, index, degree)
+}
+
+fn linearised(setup: &Setup, index: usize, degree: f64) -> Result<Option<SampledLoop>, SetupError> {
+    let (Some(control), Some(own)) = (&setup.control, setup.agents.get(index)) else { return Ok(None) };
+    let quick = match control.sensors.velocity {
+        VelocitySensor::Measured => None,
+        VelocitySensor::Filtered { cut_off_hz } => {
+            Some(-libm::expm1(-core::f64::consts::TAU * cut_off_hz / control.sample_hz))
+        }
+    };
     let mut own = own.clone();
     own.enforce_limits = false;
     own.pushes.clear();
@@ -60,8 +94,10 @@ pub fn sampled_jacobian(setup: &Setup, index: usize) -> Result<Option<SampledJac
     };
     let law = alone.agents[0].law.clone();
     let block = law.block(&Assembly::new(&alone, &[0]))?;
-    let sums = vec![0.0; message_len(&alone)];
-    Period { columns: block.0, setup: &alone, control: exact, sums }.jacobian()
+    let heard = [(); 2].map(|()| vec![0.0; message_len(&alone)]);
+    let moving = |k: &usize| block.0.locate(*k).1 == Signal::Velocity;
+    let filtered = if quick.is_some() { (0..block.0.state_len()).filter(moving).collect() } else { Vec::new() };
+    Period { columns: block.0, setup: &alone, control: exact, degree, heard, quick, filtered }.linearised()
 }
 
 /// What makes a period pass.
@@ -69,79 +105,142 @@ struct Period<'a> {
     columns: Box<dyn Columns>,
     setup: &'a Setup,
     control: Control,
-    /// What is heard: nothing.
-    sums: Vec<f64>,
+    /// Σ_j w_ij.
+    degree: f64,
+    /// Σ_j w_ij m_j of what neighbours tell, at the beginning and at the end.
+    heard: [Vec<f64>; 2],
+    /// 1 − e^(−ωh) of the filter.
+    quick: Option<f64>,
+    /// The velocities in the state that a filter stands for.
+    filtered: Vec<usize>,
+}
+
+/// What a period brings.
+struct Passed {
+    /// The state at its end.
+    state: Vec<f64>,
+    /// What was told at its beginning.
+    told: Vec<f64>,
 }
 
 impl Period<'_> {
-    fn jacobian(mut self) -> Result<Option<SampledJacobian>, SetupError> {
+    fn linearised(mut self) -> Result<Option<SampledLoop>, SetupError> {
         let mut x = Vec::new();
         self.columns.append_start(&self.setup.agents, &mut x);
-        let sums = self.sums.clone();
         let agent = &self.setup.agents[0].name;
         let error = |error| SetupError::Length { agent: agent.clone(), error };
-        self.columns.start(&self.setup.agents, &mut x, &[0.0], &sums).map_err(error)?;
-        let states = x.len();
-        let (_, command) = self.pass(&x, None)?;
-        if self.control.computation_delay_s > 0.0 {
-            x.extend(command);
+        let (degree, none) = ([self.degree], self.heard[0].clone());
+        self.columns.start(&self.setup.agents, &mut x, &degree, &none).map_err(error)?;
+        x.extend(self.filtered.iter().map(|k| x[*k]).collect::<Vec<_>>());
+        // All agree with the agent as it starts.
+        let Passed { told, .. } = self.pass(&x, false)?;
+        let agreed: Vec<f64> = told.iter().map(|entry| self.degree * entry).collect();
+        self.heard = [agreed.clone(), agreed];
+        let is_late = self.control.computation_delay_s > 0.0;
+        if is_late {
+            let Passed { state, .. } = self.pass(&x, false)?;
+            x.extend(state.get(x.len()..).unwrap_or_default().to_vec());
         }
-        let n = x.len();
-        let mut entries = vec![0.0; n * n];
+        let (n, m) = (x.len(), told.len());
+        let [mut entries, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];
+        let mut hears = [vec![0.0; n * m], vec![0.0; n * m]];
         for column in 0..n {
             let apart = APART * (1.0 + x[column].abs());
             let mut moved = |by: f64| {
                 let mut x = x.clone();
                 x[column] += by;
-                let before = (n > states).then(|| x.split_off(states));
-                let (mut next, command) = self.pass(&x, before.as_deref())?;
-                if n > states {
-                    next.extend(command);
-                }
-                Ok::<_, SetupError>(next)
+                self.pass(&x, is_late)
             };
             let (above, below) = (moved(apart)?, moved(-apart)?);
-            for (row, (above, below)) in above.iter().zip(&below).enumerate() {
-                entries[row * n + column] = (above - below) / (2.0 * apart);
+            let slope = |(above, below): (&f64, &f64)| (above - below) / (2.0 * apart);
+            for (row, pair) in above.state.iter().zip(&below.state).enumerate() {
+                entries[row * n + column] = slope(pair);
+            }
+            for (row, pair) in above.told.iter().zip(&below.told).enumerate() {
+                tells[row * n + column] = slope(pair);
             }
         }
-        Ok(entries.iter().all(|entry| entry.is_finite()).then_some(SampledJacobian { size: n, entries }))
+        let is_heard = self.degree > 0.0;
+        for (when, hears) in hears.iter_mut().enumerate().filter(|_| is_heard) {
+            for column in 0..m {
+                let apart = APART * (1.0 + self.heard[when][column].abs());
+                let mut moved = |by: f64| {
+                    self.heard[when][column] += by;
+                    let passed = self.pass(&x, is_late);
+                    self.heard[when][column] -= by;
+                    passed
+                };
+                let (above, below) = (moved(apart)?, moved(-apart)?);
+                for (row, (above, below)) in above.state.iter().zip(&below.state).enumerate() {
+                    hears[row * m + column] = self.degree * (above - below) / (2.0 * apart);
+                }
+            }
+        }
+        let all = || entries.iter().chain(&tells).chain(hears.iter().flatten());
+        let is_finite = all().all(|entry| entry.is_finite());
+        Ok(is_finite.then_some(SampledLoop { own: SampledJacobian { size: n, entries }, message: m, tells, hears }))
     }
 
-    /// The state a period after `x`, and the command at its beginning; `before` is what the actuators held until then.
-    fn pass(&mut self, x: &[f64], before: Option<&[f64]>) -> Result<(Vec<f64>, Vec<f64>), SetupError> {
+    /// The state a period after `x`, and what is told at its beginning. Where commands are late, `x` ends with what the actuators held
+    /// until then, and so does what comes after it; without that it is as if they had held what is commanded now.
+    fn pass(&mut self, x: &[f64], is_late: bool) -> Result<Passed, SetupError> {
         let period_s = 1.0 / self.control.sample_hz;
         let late_s = self.control.computation_delay_s;
-        let recipes = self.columns.recipes(self.setup, x)?;
+        let states = self.columns.state_len();
+        let seen = states + self.filtered.len();
+        let (mut x, rest) = (x[..states].to_vec(), &x[states..]);
+        let (mut filter, before) = (rest[..seen - states].to_vec(), &rest[seen - states..]);
+        let recipes = self.columns.recipes(self.setup, &x)?;
         let agent = &self.setup.agents[0].name;
         let controllers: Result<Vec<_>, _> = recipes.iter().map(|(_, recipe)| built(recipe, agent)).collect();
         self.columns.sample(&self.control, controllers?);
-        let mut x = x.to_vec();
-        self.take(0.0, &mut x);
+        let mut told = self.heard[0].clone();
+        self.take(0.0, &mut x, &filter, 0, &mut told);
         let mut command = Vec::new();
         self.columns.taken(&mut |digital| command.extend_from_slice(digital.taken(0, 0.0).command));
-        if let Some(before) = before {
+        let begun = self.positions(&x);
+        if is_late {
             self.columns.hold(before);
             self.flow(&mut x, [0.0, late_s]);
         }
         self.columns.apply();
-        self.flow(&mut x, [if before.is_some() { late_s } else { 0.0 }, period_s]);
-        self.take(period_s, &mut x);
-        Ok((x, command))
+        self.flow(&mut x, [if is_late { late_s } else { 0.0 }, period_s]);
+        if let Some(quick) = self.quick {
+            let ended = self.positions(&x);
+            for (f, (end, begin)) in filter.iter_mut().zip(ended.iter().zip(&begun)) {
+                *f += quick * ((end - begin) / period_s - *f);
+            }
+        }
+        let mut ignored = told.clone();
+        self.take(period_s, &mut x, &filter, 1, &mut ignored);
+        x.extend(filter);
+        if self.control.computation_delay_s > 0.0 {
+            x.extend(command);
+        }
+        Ok(Passed { state: x, told })
     }
 
-    /// A sample.
-    fn take(&mut self, now_s: f64, x: &mut [f64]) {
-        let mut sent = self.sums.clone();
-        self.columns.sense(now_s, x, &mut sent);
-        let inputs = Inputs { degree: &[0.0], sums: &self.sums, external: None };
+    /// Those whose velocities are filtered.
+    fn positions(&self, x: &[f64]) -> Vec<f64> {
+        let all = (0..x.len()).filter(|k| self.columns.locate(*k).1 == Signal::Position);
+        all.take(self.filtered.len()).map(|k| x[k]).collect()
+    }
+
+    /// A sample; `told` is what it tells.
+    fn take(&mut self, now_s: f64, x: &mut [f64], filter: &[f64], when: usize, told: &mut [f64]) {
+        let mut seen = x.to_vec();
+        self.filtered.iter().zip(filter).for_each(|(k, f)| seen[*k] = *f);
+        self.columns.sense(now_s, &seen, told);
+        let degree = [self.degree];
+        let inputs = Inputs { degree: &degree, sums: &self.heard[when], external: None };
         self.columns.command(now_s, inputs, x);
     }
 
     /// The plant moves under what the actuators hold.
     fn flow(&mut self, x: &mut [f64], [from_s, until_s]: [f64; 2]) {
         let h = (until_s - from_s) / f64::from(STEPS);
-        let inputs = Inputs { degree: &[0.0], sums: &self.sums, external: None };
+        let degree = [self.degree];
+        let inputs = Inputs { degree: &degree, sums: &self.heard[0], external: None };
         let n = x.len();
         let (mut k, mut stage, mut sum) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         for step in 0..STEPS {
