@@ -17,14 +17,16 @@ impl Case<'_> {
         // With s = 0 from the start z is ẋ.
         let upper = dynamics.upper().undisturbed();
         let equation = notation.equation(Quantity::own(Letter::Position), upper.order, &upper.right);
-        let sections = vec![
-            Section::new(Subject::ReferenceDynamics)
+        let mut chosen = Section::new(Subject::ReferenceDynamics)
                 .words(
                     "Dynamic feedback linearisation makes the thrust and two angular velocities an input u of the third derivative of x, and \
                      u is chosen so that x obeys (24) of order two at once. There is no s, so this is no cascade.",
                 )
-                .formula(equation, "(46)"),
-        ];
+                .formula(equation, "(46)");
+        if self.is_pushed() {
+            chosen = chosen.words("Something pushes: what it adds to the third derivative is not in the equation.");
+        }
+        let sections = vec![chosen];
         let laplacian = self.laplacian(&upper, notation, &Places::default());
         let sections = sections.into_iter().chain(laplacian).collect();
         Explained { agents: self.agents.clone(), order: Some(upper.order), degrees: None, sections }

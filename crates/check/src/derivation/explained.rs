@@ -179,7 +179,7 @@ impl Case<'_> {
         if let Step::Thrust(ThrustStep::Continuous, _) = self.step {
             return self.without_reference(dynamics, &notation);
         }
-        let lower_order = self.lower().map_or(1, |lower| lower.order);
+        let lower_order = self.lower_order();
         let upper = self.upper(dynamics);
         let (reduction, reduced) = self.reduction(&upper, dynamics, (&notation, &places));
         let degrees = [dynamics.upper().degree(lower_order), reduced.as_ref().map_or(0, |r| r.degree(lower_order))];
@@ -241,7 +241,8 @@ impl Case<'_> {
         }
         if self.agents.iter().any(|agent| self.setup.agents[*agent].target.is_some()) && !self.is_led_to_target() {
             section = section.words(format!(
-                "Agents keep an offset from where all agree; {0} stands for {0} less that offset.",
+                "Agents keep an offset from where all agree. Here and in the cascade, {0} and z stand for what they are less that offset and its \
+                 derivative; in the plant and in the law they are themselves, and the offset cancels in what s obeys.",
                 notation.position
             ));
         }
@@ -350,6 +351,15 @@ impl Case<'_> {
             .fold(section, |section, (formula, place)| section.formula(formula, place))
     }
 
+    /// How many derivatives of s the state of the lower subsystem holds, and one.
+    fn lower_order(&self) -> usize {
+        match self.step {
+            // ė_i = −c_i e_i − e_{i−1} + e_{i+1} + w_iᵀΔθ: with e₁ = s, the errors of all steps and Δθ give s and N − 1 derivatives of it.
+            Step::Chain(order, ChainStepKind::Backstepping, _) => order,
+            _ => self.lower().map_or(1, |lower| lower.order),
+        }
+    }
+
     fn cascade(&self, dynamics: &Dynamics, degree: usize, (notation, places): (&Notation, &Places)) -> Section {
         let upper =
             notation.equation(Quantity::own(Letter::Position), dynamics.total_order(), &dynamics.loop_with_reference());
@@ -362,10 +372,13 @@ impl Case<'_> {
         section = section.system(system, places.cascade);
         let derivatives = dynamics.upper().derivatives_of_input();
         let s = if notation.starred_error { "s*" } else { "s" };
-        let state = if self.lower().is_some_and(|lower| lower.order > 1) {
-            format!(", of which the state of the lower subsystem, {s} and its derivative, holds one")
-        } else {
-            String::new()
+        let state = match (self.lower_order(), &self.step) {
+            (1, _) => String::new(),
+            (n, Step::Chain(..)) => {
+                let below = n - 1;
+                format!(", of which the state of the lower subsystem, e₁ to e_{n} and Δθ with e₁ = s, holds {below}")
+            }
+            _ => format!(", of which the state of the lower subsystem, {s} and its derivative, holds one"),
         };
         let count = match derivatives {
             0 => format!("No derivative of {s} stands in the upper subsystem"),

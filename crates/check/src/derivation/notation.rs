@@ -167,7 +167,8 @@ impl Notation {
                 return Formula::product(factors);
             }
             Term::External => {
-                Symbol::new("τ").below(if index.is_empty() { "ext".into() } else { format!("ext,{index}") })
+                let below = if index.is_empty() { "ext".into() } else { format!("ext,{index}") };
+                Symbol::new("τ").below(below).derivative(k)
             }
             Term::AttitudeErrorRate => {
                 let apart = Symbol::new("Δq").above(self.apart).derivative(k);

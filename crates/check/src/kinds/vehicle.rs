@@ -62,8 +62,8 @@ pub(super) fn treated(agent: &AgentSetup) -> &'static str {
 /// The theorem about vehicles that all have the design of the first, and what it promises.
 pub(super) fn claim(setup: &Setup) -> Option<Claim> {
     const JUMPS: &str = "thrust and attitude stay continuous through switches and delay jumps, angular velocities jump";
-    const SMOOTH: &str =
-        "angular velocities and the rate of the thrust stay differentiable through switches and delay jumps";
+    const SMOOTH: &str = "angular velocities and the rate of the thrust stay continuous through switches and delay jumps, with \
+                          bounded derivatives";
     let (theorem, smooth) = match law(setup.agents.first()?)?.design {
         ThrustKind::Continuous => (Theorem::ContinuousThrust, JUMPS),
         ThrustKind::Differentiable { .. } => (Theorem::Theorem4, SMOOTH),

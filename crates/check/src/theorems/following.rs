@@ -69,12 +69,12 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
             "the torque is as smooth as the value of the sign that is chosen"
         }
         FollowingDesign::Composite if over != Over::Fixed => {
-            "the torque is differentiable, through switches and jumps of delays too"
+            "the torque is continuous with a bounded derivative, through switches and jumps of delays too"
         }
         FollowingDesign::Differentiable
         | FollowingDesign::WithoutAcceleration
         | FollowingDesign::Composite
-        | FollowingDesign::Swarm { .. } => "the torque is differentiable",
+        | FollowingDesign::Swarm { .. } => "the torque is continuous with a bounded derivative",
     };
     let mut hypotheses = vec![bounded_motion(setup, following), gain(setup, following)];
     hypotheses.extend(match over {

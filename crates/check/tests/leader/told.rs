@@ -68,9 +68,9 @@ fn own_one_vector_is_judged_as_110_is_but_for_its_gain_and_its_torque() {
         assert_eq!([&agreed, &weak].map(|report| answer(report, "γ exceeds").0), [Answer::Holds, Answer::Violated]);
         let over = graph.constant_graph().is_none() || delay_s > 0.0;
         let covered = graph.constant_graph().is_none() != (delay_s > 0.0);
-        let smooth = agreed.promises.contains("differentiable, through switches and jumps of delays");
+        let smooth = agreed.promises.contains("bounded derivative, through switches and jumps of delays");
         assert_eq!(
-            (agreed.promises.contains("differentiable"), smooth),
+            (agreed.promises.contains("the torque is continuous with a bounded derivative"), smooth),
             (true, over && covered),
             "{}",
             agreed.promises

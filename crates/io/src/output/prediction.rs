@@ -275,7 +275,8 @@ impl CourseFound {
             format!("s starts from {} {unit}", number_words(s))
         });
         let far = (off > NEAR).then(|| "estimates start far from the truth".to_owned());
-        let reasons: Vec<String> = begins.into_iter().chain(far).collect();
+        let pushed = setup.agents.iter().any(|agent| !agent.pushes.is_empty()).then(|| "pushes act".to_owned());
+        let reasons: Vec<String> = begins.into_iter().chain(far).chain(pushed).collect();
         if reasons.is_empty() {
             return String::new();
         }
