@@ -31,6 +31,9 @@ pub fn program(kinds: &Kinds) -> ExitCode {
 
 /// [`program`] with these arguments, the first of which is its name.
 pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> ExitCode {
+    // A file that may not grow any more is a write that fails, and not the end of the program.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     if let Some(status) = commands::asked(&arguments) {
         return status.into();

@@ -23,6 +23,7 @@ mod own_reference;
 mod pushes;
 mod report;
 mod robot;
+mod safe;
 mod shipped;
 mod stepped;
 mod support;

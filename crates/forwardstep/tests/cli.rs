@@ -110,7 +110,7 @@ fn an_existing_folder_is_kept_unless_forced() {
     fs::write(out.join("summary.json"), "mine").unwrap();
     fs::write(out.join("notes.txt"), "mine too").unwrap();
     let error = stderr(&forwardstep(&folder, &["run", "two.toml"]).code(2));
-    assert!(error.contains("already exists") && error.contains("--force"), "{error}");
+    assert!(error.contains("already exists") && !error.contains("--force"), "{error}");
     assert_eq!(names(&out), ["notes.txt", "summary.json"]);
     assert_eq!(fs::read_to_string(out.join("summary.json")).unwrap(), "mine");
     // What no run wrote stays, whatever is asked for.

@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::de::IgnoredAny;
 
+use crate::wording::for_shell;
+
 /// A kind of text that people have beside scenarios, robots and tables, or mistake for one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -69,6 +71,7 @@ impl Meant {
 
     /// What to do with it where a scenario is asked for; `file` is its name as a shell takes it.
     pub(crate) fn given_as_scenario(self, file: &str) -> String {
+        let file = for_shell(file);
         match self {
             Meant::Urdf => format!(
                 "`forwardstep new my-scenario.toml --robot {file}` writes a scenario for it, and `forwardstep robot {file}` describes it"
@@ -85,6 +88,7 @@ impl Meant {
 
     /// What to do with it where a robot is asked for.
     pub(crate) fn given_as_robot(self, file: &str) -> String {
+        let file = for_shell(file);
         match self {
             Meant::Scenario => format!(
                 "`forwardstep check {file}` and `forwardstep run {file}` take it; a robot is a URDF, or a kind in the scenario"

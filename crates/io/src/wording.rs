@@ -63,6 +63,16 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, _, candidate)| candidate.to_owned())
 }
 
+/// A name as a shell takes it for one word, to be pasted.
+pub fn for_shell(name: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "._/-+:=@%,".contains(c);
+    if !name.is_empty() && name.chars().all(is_plain) {
+        name.to_owned()
+    } else {
+        format!("'{}'", name.replace('\'', r"'\''"))
+    }
+}
+
 /// "did you mean `x`?"
 pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{}`?", shown(name)))
@@ -82,7 +92,7 @@ fn strange_letters<'a>(word: &str, candidates: impl Iterator<Item = &'a str> + C
 }
 
 /// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
-pub(crate) fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
+pub fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
     // All that ships fits; of a folder with many files the first are named, and how many there are besides.
     const MOST: usize = 100;
     let names = || candidates.iter().map(AsRef::as_ref);

@@ -11,8 +11,9 @@ fn a_folder_that_is_not_empty_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
     let refused = RunFolder::create(folder.path(), false).unwrap_err();
-    assert!(matches!(refused, OutputError::FolderNotEmpty { .. }));
-    assert!(refused.help().unwrap().contains("--force"));
+    // Nobody is told to force what would be refused.
+    assert!(matches!(refused, OutputError::FolderNotEmpty { replaceable: false, .. }));
+    assert!(!refused.help().unwrap().contains("--force"));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 

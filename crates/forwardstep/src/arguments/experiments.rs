@@ -50,6 +50,9 @@ pub(crate) struct FalsifyOptions {
     pub(crate) out: PathBuf,
 }
 
+/// More cannot be told apart in a picture, and each takes room.
+const MOST_PIECES: i64 = 1000;
+
 #[derive(Debug, Args)]
 pub(crate) struct AttackOptions {
     /// What is attacked: a design (a1, 24, a1-first-roots, 24-complex-roots, 119-weights,
@@ -58,8 +61,8 @@ pub(crate) struct AttackOptions {
     #[arg(value_name = "DESIGN|SCENARIO", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) what: String,
     /// Pieces of the delay, and phases of the schedule, at most
-    #[arg(long, value_name = "N", default_value_t = 6)]
-    pub(crate) pieces: usize,
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=MOST_PIECES))]
+    pub(crate) pieces: u32,
     /// The same seed searches the same scenarios
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,

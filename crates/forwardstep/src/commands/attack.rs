@@ -1,10 +1,11 @@
 //! `forwardstep attack`
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::time::Duration;
 
 use forwardstep::check::Id;
+use forwardstep::io::output::digest;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
@@ -17,14 +18,11 @@ use crate::status::Status;
 
 /// What the first line of a file says that is saved, between a number and names.
 const LEFT: &str = " % is left; hypotheses that do not hold: ";
+/// What its last line begins with, before the digest of all above: by it a file is known that nobody edited since.
+const DIGEST: &str = "# as saved: ";
 
 /// Searches for delays and schedules under which a design, or a scenario, does worst.
 pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    let is_own = |file: BufReader<File>| {
-        let mut line = String::new();
-        // A file that is not this has a first line of any length.
-        file.take(400).read_line(&mut line).is_ok() && line.starts_with("# ") && line.contains(LEFT)
-    };
     if let Err(refused) = replace::may_replace(&options.out, is_own) {
         return complain(&refused);
     }
@@ -41,7 +39,7 @@ fn limit(options: &AttackOptions) -> Duration {
 
 fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Console) -> Status {
     let limit = limit(options);
-    let attack = Attack { target, pieces: options.pieces, seed: options.seed, limit };
+    let attack = Attack { target, pieces: options.pieces as usize, seed: options.seed, limit };
     let Some(found) = attack.search(&|| stop.asked().is_some()) else {
         console.line("nothing could be tried in this time");
         return stop.asked().unwrap_or(Status::Missed);
@@ -72,7 +70,7 @@ fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Co
 /// A scenario of the user's own, within the delays and schedules that it allows.
 fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut Console) -> Result<Status, Status> {
     let scenario = kinds.open_scenario(&options.what).map_err(|error| complain(&error))?;
-    let (pieces, seed, limit) = (options.pieces, options.seed, limit(options));
+    let (pieces, seed, limit) = (options.pieces as usize, options.seed, limit(options));
     let attack = OwnAttack { scenario: &scenario, kinds, pieces, seed, limit };
     let failed = |error| complain(&Plain::new(format!("`{}` cannot be attacked: {error}", options.what)));
     let OwnFound { text, worst, stated, broken, tried } = match attack.search(&|| stop.asked().is_some()) {
@@ -115,8 +113,19 @@ fn listed(broken: &[Id]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
+fn is_own(file: BufReader<File>) -> bool {
+    const MOST_BYTES: u64 = 1 << 26;
+    let mut text = String::new();
+    file.take(MOST_BYTES).read_to_string(&mut text).is_ok()
+        && text.rfind(DIGEST).is_some_and(|at| text == with_digest(&text[..at]))
+}
+
+fn with_digest(text: &str) -> String {
+    format!("{text}{DIGEST}{}\n", digest(text))
+}
+
 fn saved(options: &AttackOptions, text: &str, console: &mut Console) -> Result<(), Status> {
-    replace::write(&options.out, text).map_err(|refused| complain(&refused))?;
+    replace::write(&options.out, &with_digest(text)).map_err(|refused| complain(&refused))?;
     console.line(format_args!("  {DIM}saved: {}{DIM:#}", shown(&options.out)));
     Ok(())
 }

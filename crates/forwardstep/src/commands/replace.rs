@@ -1,7 +1,7 @@
 //! Files that a command writes where the user says: what somebody else wrote there is never lost.
 
 use std::fs::{self, File};
-use std::io::{BufReader, ErrorKind};
+use std::io::{self, BufReader, ErrorKind, Write};
 use std::path::Path;
 
 use forwardstep::io::shown;
@@ -34,7 +34,30 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
     }
 }
 
-/// Writes it.
+/// Writes it, whole or not at all: what was there before stays where that fails.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), Plain<String>> {
-    fs::write(path, text).map_err(|error| Plain::new(format!("cannot write `{}`: {error}", shown(path))))
+    let written = match fs::metadata(path) {
+        // A terminal or a pipe has no other name, and keeps nothing.
+        Ok(found) if !found.is_file() => fs::write(path, text),
+        // The file itself, not a link to it.
+        Ok(found) => fs::canonicalize(path).and_then(|path| put(&path, text, Some(found.permissions()))),
+        Err(_) => put(path, text, None),
+    };
+    written.map_err(|error| Plain::new(format!("cannot write `{}`: {error}", shown(path))))
+}
+
+/// Under another name first, which no other program that runs now has.
+fn put(path: &Path, text: &str, permissions: Option<fs::Permissions>) -> io::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let partial = path.with_file_name(format!(".{name}.{}.partial", std::process::id()));
+    let written = File::create(&partial).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;
+        file.sync_all()
+    });
+    let replaced = written.and_then(|()| fs::rename(&partial, path));
+    if replaced.is_err() {
+        drop(fs::remove_file(&partial));
+    }
+    replaced
 }

@@ -13,7 +13,15 @@ use crate::status::Status;
 
 /// Builds the report and the plots of a run anew from its tables, or all of it elsewhere.
 pub(crate) fn report(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Status {
-    let into = out.map(|out| move || RunFolder::create(out, false));
+    let into = out.map(|out| {
+        // Nothing replaces what another folder holds.
+        move || match RunFolder::create(out, false) {
+            Err(OutputError::FolderNotEmpty { path, .. }) => {
+                Err(OutputError::FolderNotEmpty { path, replaceable: false })
+            }
+            made => made,
+        }
+    });
     finish(folder, into, kinds, console).unwrap_or_else(|status| status)
 }
 

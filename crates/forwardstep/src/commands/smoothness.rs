@@ -1,8 +1,10 @@
 //! `forwardstep smoothness`
 
 use std::fmt::Display;
-use std::fs;
+use std::fs::File;
+use std::io::{BufReader, Read};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use forwardstep::check::smoothness::{
     self as input, Covered, Filters, LargestJump, OfOrder, Smoothness, filters, orders, traces,
@@ -12,9 +14,9 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::io::shown;
 use forwardstep::sim::{Progress, Setup, Signal};
 
+use super::replace;
 use super::stop::Stop;
 use crate::arguments::SmoothnessOptions;
 use crate::console::{Console, DIM, Plain, complain};
@@ -29,6 +31,9 @@ pub(crate) fn smoothness(options: &SmoothnessOptions, kinds: &Kinds, console: &m
 }
 
 fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    if let Some(path) = &options.plot {
+        replace::may_replace(path, is_own).map_err(|refused| complain(&refused))?;
+    }
     let stop = Stop::listen();
     let mut observer =
         |_: Progress| if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
@@ -53,7 +58,7 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
             }
             if let Some(path) = &options.plot {
                 let drawn = draw_orders(&scenario, &found, &mut observer).map_err(|error| failed(&error))?;
-                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", shown(path))))?;
+                write(path, &drawn)?;
             }
             (found.iter().all(|of| of.kept), SmoothnessFound::orders(setup, &found))
         } else if !options.filters_s.is_empty() {
@@ -64,7 +69,7 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
             if let Some(path) = &options.plot {
                 let drawn = plot_filters(&found, &unit_of(setup, found.jumps.first().map(|of| of.jump)));
                 let drawn = drawn.map_err(|error| failed(&error))?;
-                fs::write(path, drawn).map_err(|error| failed(&format!("{}: {error}", shown(path))))?;
+                write(path, &drawn)?;
             }
             (true, SmoothnessFound::filters(setup, &found))
         } else {
@@ -84,6 +89,18 @@ fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> 
         console.json(document.to_json().map_err(|error| failed(&error))?);
     }
     Ok(status)
+}
+
+/// What a plot ends with, by which it is known again.
+const DRAWN: &str = "<!-- drawn by forwardstep smoothness -->\n";
+
+fn is_own(mut file: BufReader<File>) -> bool {
+    let mut text = String::new();
+    file.read_to_string(&mut text).is_ok() && text.ends_with(DRAWN)
+}
+
+fn write(path: &Path, drawn: &str) -> Result<(), Status> {
+    replace::write(path, &format!("{drawn}{DRAWN}")).map_err(|refused| complain(&refused))
 }
 
 fn head(options: &SmoothnessOptions, console: &mut Console) {

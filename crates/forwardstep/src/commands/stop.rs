@@ -52,9 +52,6 @@ impl Stop {
         use signal_hook::consts::{SIGHUP, SIGTERM};
         use signal_hook::iterator::Signals;
 
-        // A file that may not grow any more is then a write that fails, and not the end of the program.
-        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
-
         // Who starts a run under `nohup` wants it to outlive the terminal.
         let wanted = if hangups_are_ignored() { &[SIGTERM][..] } else { &[SIGTERM, SIGHUP] };
         let Ok(mut signals) = Signals::new(wanted) else { return };

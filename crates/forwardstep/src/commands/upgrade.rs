@@ -1,13 +1,13 @@
 //! `forwardstep upgrade`
 
-use std::fs::{self, File};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::Path;
 
 use forwardstep::io::scenario::{open_text, upgrade as converted};
 use forwardstep::io::shown;
 use thiserror::Error;
 
+use super::replace;
 use crate::arguments::UpgradeOptions;
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
@@ -17,10 +17,6 @@ use crate::status::Status;
 enum UpgradeError {
     #[error("`--out` names one file, but several are to be converted")]
     OneFile,
-    #[error("cannot read `{}`: {reason}", shown(path))]
-    Read { path: PathBuf, reason: std::io::Error },
-    #[error("cannot write `{}`: {reason}", shown(path))]
-    Write { path: PathBuf, reason: std::io::Error },
 }
 
 fn refused(error: UpgradeError) -> Status {
@@ -37,19 +33,20 @@ pub(crate) fn upgrade(options: &UpgradeOptions, console: &mut Console) -> Status
 }
 
 fn one(path: &Path, options: &UpgradeOptions, console: &mut Console) -> Result<(), Status> {
-    let unread = |reason| refused(UpgradeError::Read { path: path.to_owned(), reason });
     // What is clearly no scenario, such as a key, is not quoted.
     let source = open_text(path).map_err(|error| complain(&error))?;
     let upgraded = converted(&source).map_err(|error| complain(&error))?;
     let to = match &options.out {
         _ if options.stdout => None,
-        Some(out) => Some(out.clone()),
+        Some(out) => Some(out.as_path()),
         None if upgraded.moved.is_empty() => None,
-        // The file itself, not a link to it.
-        None => Some(fs::canonicalize(path).map_err(unread)?),
+        None => Some(path),
     };
     if let Some(to) = to {
-        replace(&to, &upgraded.text).map_err(|reason| refused(UpgradeError::Write { path: to, reason }))?;
+        // What is there under another name than that of the file itself is somebody's.
+        let is_itself = |_| fs::canonicalize(to).ok() == fs::canonicalize(path).ok();
+        replace::may_replace(to, is_itself).map_err(|refused| complain(&refused))?;
+        replace::write(to, &upgraded.text).map_err(|refused| complain(&refused))?;
     }
     let mut say = |line: String| if options.stdout { remark(line) } else { console.line(line) };
     if upgraded.moved.is_empty() {
@@ -62,22 +59,4 @@ fn one(path: &Path, options: &UpgradeOptions, console: &mut Console) -> Result<(
         console.verbatim(upgraded.text);
     }
     Ok(())
-}
-
-/// Puts `text` in place of the file at `path`, whole or not at all.
-fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = path.with_file_name(format!(".{name}.partial"));
-    let written = File::create(&partial).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        if let Ok(before) = fs::metadata(path) {
-            file.set_permissions(before.permissions())?;
-        }
-        file.sync_all()
-    });
-    let replaced = written.and_then(|()| fs::rename(&partial, path));
-    if replaced.is_err() {
-        drop(fs::remove_file(&partial));
-    }
-    replaced
 }

@@ -100,7 +100,7 @@ fn smoothness_says_in_words_what_jumps_and_why_it_cannot_say() {
         (&["theorem-2", "--orders", "1", "--filters", "1"], "cannot be used with"),
         (&["theorem-2", "--plot", "x.svg"], "required arguments were not provided"),
         (&["backstepping", "--orders", "1"], "has no order to change"),
-        (&["theorem-2", "--orders", "1", "--plot", "no/such/folder.svg"], "no/such/folder.svg: "),
+        (&["theorem-2", "--orders", "1", "--plot", "no/such/folder.svg"], "there is no folder `no/such`"),
     ] {
         let complaint = stderr(&forwardstep(&here, &[&["smoothness"], arguments].concat()).code(2));
         assert!(complaint.split_whitespace().collect::<Vec<_>>().join(" ").contains(why), "{complaint}");

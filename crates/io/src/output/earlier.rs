@@ -13,7 +13,9 @@ use super::folder::SEAL;
 use super::inputs::file_digest;
 use super::journal::JOURNAL;
 use super::summary::TableFile;
+use super::{SHAPES, journal};
 use crate::files::{MOST_BYTES, read_text};
+use crate::shapes::Shapes;
 
 /// The files that nothing else holds.
 const OWN: [&str; 6] =
@@ -63,6 +65,16 @@ pub(super) fn may_be_replaced(folder: &Path) -> Result<(), OutputError> {
         }
         return Err(OutputError::NotOfARun { path: folder.to_owned() });
     };
+    // Neither has a digest in the summary; what a run wrote under these names is known by its form.
+    let shapes = folder.join(SHAPES);
+    let is_shapes = || read_text(&shapes).is_ok_and(|text| serde_json::from_str::<Shapes>(&text).is_ok());
+    if shapes.is_file() && !is_shapes() {
+        return Err(OutputError::Changed { path: shapes });
+    }
+    let rows = folder.join(JOURNAL);
+    if rows.is_file() && !journal::is_one(&rows) {
+        return Err(OutputError::Changed { path: rows });
+    }
     for name in OWN {
         let path = folder.join(name);
         if path.symlink_metadata().is_err() {

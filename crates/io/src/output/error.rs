@@ -12,6 +12,8 @@ pub enum OutputError {
     FolderNotEmpty {
         /// The folder.
         path: PathBuf,
+        /// Whether what it holds may be replaced by who asks for that.
+        replaceable: bool,
     },
     /// The folder was to be replaced, and no run wrote it.
     #[error("{} was not written by a run, and stays as it is", shown(path))]
@@ -137,9 +139,10 @@ impl OutputError {
     pub fn help(&self) -> Option<&'static str> {
         const AMID: [Action; 4] = [Action::CreateFile, Action::WriteFile, Action::RenameFile, Action::RemoveFile];
         match self {
-            OutputError::FolderNotEmpty { .. } => {
+            OutputError::FolderNotEmpty { replaceable: true, .. } => {
                 Some("choose another folder, or replace the files of the earlier run with --force")
             }
+            OutputError::FolderNotEmpty { .. } => Some("choose another folder"),
             OutputError::NotOfARun { .. } => {
                 Some("choose another folder: --force replaces only what an earlier run wrote")
             }

@@ -99,7 +99,8 @@ impl RunFolder {
         folder.claim = Claim::of(path)?;
         if !is_empty(path, false)? {
             if !force {
-                return Err(OutputError::FolderNotEmpty { path: path.clone() });
+                let replaceable = may_be_replaced(path).is_ok();
+                return Err(OutputError::FolderNotEmpty { path: path.clone(), replaceable });
             }
             may_be_replaced(path)?;
         }

@@ -21,7 +21,7 @@ pub(crate) fn copies(inputs: &[InputFile]) -> Vec<(Input, &str)> {
     let (plain, outside): (Vec<_>, Vec<_>) = inputs.iter().partition(|input| plain_name(&input.name).is_some());
     for input in plain.into_iter().chain(outside) {
         let text = input.source.text();
-        let digest_blake3 = blake3::hash(text.as_bytes()).to_hex().to_string();
+        let digest_blake3 = digest(text);
         let base = input.name.rsplit(['/', '\\']).next().unwrap_or_default();
         let own = plain_name(&input.name).into_iter().map(|name| format!("{INPUTS}/{name}"));
         let others = (1_u64..).map(|k| match k {
@@ -62,6 +62,11 @@ pub(crate) fn of_earlier_run(folder: &Path) -> Vec<String> {
     own.filter(|input| file_digest(&folder.join(&input.file)).is_ok_and(|digest| digest == input.digest_blake3))
         .map(|input| input.file)
         .collect()
+}
+
+/// The BLAKE3 digest of a text, in hexadecimal.
+pub fn digest(text: &str) -> String {
+    blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// The BLAKE3 digest of a file, in hexadecimal.

@@ -88,6 +88,7 @@ pub use folder::RunFolder;
 use folder::{Staging, Written};
 pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
 pub use injected::{FirstInjection, Injected};
+pub use inputs::digest;
 pub use journal::{Journal, JournalError};
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,

@@ -12,7 +12,7 @@ use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::shown;
 use crate::shown::one_line;
-use crate::wording::choose;
+use crate::wording::{choose, for_shell};
 
 /// The rows of a run that goes on, or was cut off.
 const JOURNAL: &str = "rows.journal";
@@ -63,7 +63,7 @@ impl Diagnostic for OpenError {
                 Some(Box::new("it is a link to something that is not there"))
             }
             OpenError::File { path, reason: ReadError::Folder } if path.join(JOURNAL).exists() => {
-                let folder = shown(path);
+                let folder = for_shell(&shown(path).to_string());
                 Some(Box::new(format!(
                     "it is the folder of a run that was cut off: `forwardstep report {folder}` first writes all its files, the scenario among them"
                 )))
@@ -137,6 +137,12 @@ pub fn open_text(path: &Path) -> Result<SourceText, OpenError> {
     Ok(SourceText::new(path.display().to_string(), text))
 }
 
+/// Whether a run began in this folder of a run and has not ended: its rows are younger than the summary, if there is one.
+fn has_newer_rows(folder: &Path) -> bool {
+    let changed = |name: &str| folder.join(name).metadata().and_then(|found| found.modified()).ok();
+    changed(JOURNAL).is_some_and(|rows| changed("summary.json").is_none_or(|summary| rows > summary))
+}
+
 fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {
     if let Some(shipped) = shipped_scenario(name_or_path) {
         let source = SourceText::new(shipped.name, shipped.text);
@@ -144,6 +150,10 @@ fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {
     }
     let path = Path::new(name_or_path);
     if run_folder::is_run_folder(path) {
+        // The scenario in it may be that of the run before.
+        if has_newer_rows(path) {
+            return Err(OpenError::File { path: path.to_owned(), reason: ReadError::Folder });
+        }
         return run_folder::open(path, kinds);
     }
     let text = read_text(path).map_err(|reason| {

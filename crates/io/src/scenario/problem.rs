@@ -12,7 +12,7 @@ use super::system_problem::SystemProblem;
 use super::table::TableProblem;
 use super::value_problem::ValueProblem;
 use crate::files::ReadError;
-use crate::wording::{axes, choose, entry_count};
+use crate::wording::{axes, choose, entry_count, for_shell};
 use crate::{Meant, Problem, shown};
 
 /// Why a scenario has no meaning.
@@ -202,7 +202,7 @@ impl Problem for ScenarioProblem {
             ScenarioProblem::Value(problem) => return problem.help(),
             ScenarioProblem::System(problem) => return problem.help(),
             ScenarioProblem::Format { found: 1, file } => {
-                format!("`forwardstep upgrade {file}` converts it and prints what it renames")
+                format!("`forwardstep upgrade {}` converts it and prints what it renames", for_shell(&shown(file).to_string()))
             }
             ScenarioProblem::Format { found, .. } if *found > FORMAT => "use a later version of forwardstep".into(),
             ScenarioProblem::NothingWritten => {

@@ -39,6 +39,9 @@ pub(super) fn advice_on_quantity(error: &QuantityError) -> Option<String> {
         Requirement::Within { high, .. } if error.path.name() == "computation_delay_s" && error.value > high => {
             "a computation must be done before the next begins; sample more slowly, or compute faster"
         }
+        Requirement::Throughout { seen_s, .. } if seen_s.is_some() && !error.value.is_finite() => {
+            "write a formula that is finite at all times"
+        }
         Requirement::Throughout { must: Sign::NotNegative, .. } => {
             "write `max(0, …)` or `abs(…)` around it, or in a simpler way: bounds are best where t appears once"
         }

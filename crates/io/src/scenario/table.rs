@@ -105,11 +105,20 @@ impl TableProblem {
     pub(super) fn help(&self) -> Option<String> {
         const HEADER: &str = "the first line names the columns;";
         match self {
+            TableProblem::File { reason, .. } if reason.help().is_some() => reason.help().map(str::to_owned),
             TableProblem::File { file, known, .. } if !known.is_empty() => Some(choose(file, "there are", known)),
             TableProblem::NoHeader { columns }
             | TableProblem::Meant { columns, .. }
             | TableProblem::MissingColumn { columns, .. } => Some(choose("", &format!("{HEADER} they are"), columns)),
-            TableProblem::UnknownColumn { name, columns } => Some(choose(name, &format!("{HEADER} they are"), columns)),
+            TableProblem::UnknownColumn { name, columns } if name.contains([';', '\t', '|']) => {
+                Some(choose("", "commas separate the columns of a table, which are", columns))
+            }
+            // What is short of its unit is nearer to that than to any other letter.
+            TableProblem::UnknownColumn { name, columns } => {
+                let short = |column: &&String| column.split_once('_').is_some_and(|(stem, _)| stem == name);
+                let word = columns.iter().find(short).unwrap_or(name);
+                Some(choose(word, &format!("{HEADER} they are"), columns))
+            }
             TableProblem::OpenQuote => Some("a quotation mark inside a quoted cell is written twice: \"\"".into()),
             _ => None,
         }

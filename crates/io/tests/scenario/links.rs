@@ -94,7 +94,7 @@ const CASES: &[Case] = &[
     ("formula_s = \"2^t\"", "test.toml:29:22: the exponent changes with t", "exponents are constant"),
     ("formula_s = \"0.1*sin(t)\"", "test.toml:29:19: `formula_s` is -0.000840725 at t = 3.15 s, but must not be negative", "`max(0, …)`"),
     ("formula_s = \"1/(t - 3.333)\"", "test.toml:29:19: `formula_s` is -0.30003 at t = 0 s, but must not be negative", "`max(0, …)`"),
-    ("formula_s = \"sqrt(t - 1)\"", "test.toml:29:19: `formula_s` has no finite value at t = 0 s", "`max(0, …)`"),
+    ("formula_s = \"sqrt(t - 1)\"", "test.toml:29:19: `formula_s` has no finite value at t = 0 s", "a formula that is finite at all times"),
     ("formula_s = \"1/abs(t - 3.3331)\"", "test.toml:29:19: `formula_s` must not be negative, but could only be shown to lie between -inf and inf until the end of the run at 10 s", "`max(0, …)`"),
     ("formula_s = \"1 - 2\"", "test.toml:29:19: `formula_s` is -1, but must not be negative", ""),
     ("formula_s = \"1/0\"", "test.toml:29:19: `formula_s` is NaN, but must have a finite value", ""),

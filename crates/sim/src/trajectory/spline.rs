@@ -18,6 +18,9 @@ use forwardstep_core::expression::Interval;
 /// Coefficients of a polynomial of degree five, lowest first.
 type Quintic = [f64; 6];
 
+/// Times must be as far apart as this part of what is usual.
+const NEAREST: f64 = 1e-6;
+
 /// Halvings of a piece in the search for its bounds.
 const HALVINGS: u32 = 40;
 
@@ -94,6 +97,11 @@ impl Spline {
             if pair[1] <= pair[0] {
                 return Err(SplineError::Order { row: row + 2, t_s: pair[1], before_s: pair[0] });
             }
+        }
+        // Two rows that are one, written twice, would ask for a motion within a billionth of a second, which no run ever gets past.
+        let usual_s = (t_s[t_s.len() - 1] - t_s[0]) / (t_s.len() - 1).max(1) as f64;
+        if let Some(row) = t_s.windows(2).position(|pair| pair[1] - pair[0] < NEAREST * usual_s) {
+            return Err(SplineError::TooSteep { row: row + 1 });
         }
         let slopes = slopes(&t_s, &values);
         let mut pieces = Vec::with_capacity(t_s.len());

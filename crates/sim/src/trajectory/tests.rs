@@ -169,6 +169,8 @@ fn points_that_make_no_curve_are_refused() {
         Err(SplineError::NotFinite { row: 2, value: f64::INFINITY })
     );
     assert!(matches!(Spline::new(vec![0.0, 1e-300], vec![0.0, 1.0]), Err(SplineError::TooSteep { row: 1 })));
+    let twice = Spline::new(vec![0.0, 0.1, 0.2, 0.2 + 1e-10, 0.3], vec![0.0, 1.0, 2.0, 2.5, 3.0]);
+    assert!(matches!(twice, Err(SplineError::TooSteep { row: 3 })), "{twice:?}");
     // One point is a constant.
     assert_eq!(Spline::new(vec![3.0], vec![0.7]).unwrap().jet(1.0), [0.7, 0.0, 0.0, 0.0, 0.0]);
     assert_eq!(Trajectory::new(vec![]), Err(TrajectoryError::Empty));

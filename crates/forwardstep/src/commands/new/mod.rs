@@ -6,15 +6,16 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use forwardstep::io::robot::open_robot;
+use forwardstep::io::robot::{OpenRobotError, open_robot};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::scenario::{
     OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, shipped_scenario,
 };
-use forwardstep::io::shown;
-use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, shipped_robot};
+use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, SHIPPED_ROBOTS, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
+use forwardstep::io::{choose, for_shell, shown};
 use forwardstep::sim::Exchange;
+use miette::Diagnostic;
 use thiserror::Error;
 
 use self::trial::{Tried, tried};
@@ -51,6 +52,20 @@ enum NewError {
     NoNeighbours(String),
 }
 
+/// A name that is no kind of robot, no shipped robot and no file.
+#[derive(Debug, Error)]
+#[error("there is no robot `{}`, and no such file", shown(name))]
+struct NoRobot {
+    name: String,
+    known: String,
+}
+
+impl Diagnostic for NoRobot {
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        Some(Box::new(format!("{}; for a file of your own give its path, such as `my-arm.urdf`", self.known)))
+    }
+}
+
 impl NewError {
     fn help(&self) -> Option<&'static str> {
         match self {
@@ -59,14 +74,14 @@ impl NewError {
             NewError::Write { .. } => None,
             NewError::NoJoints(_) => Some("leave `--dry-friction` out, or take an arm"),
             NewError::NotText(_) => Some("copy the robot beside the scenario"),
-            NewError::Alone => Some("take two or more, or a spacecraft, which has a target of its own"),
+            NewError::Alone => Some("take two or more, or `--leader`, or a spacecraft, which has a target of its own"),
             NewError::Order { .. } => Some("choose another `--order`, or leave it out"),
             NewError::Exchange(_) => Some("leave `--exchange` out"),
             NewError::Leads(_) => Some("see `forwardstep new --like vehicles-behind-a-leader`"),
             NewError::LedLate => {
                 Some("see `forwardstep new --like leader-over-late-links`, which comes as near as the delays let it")
             }
-            NewError::NoNeighbours(_) => Some("leave the network and the reference out"),
+            NewError::NoNeighbours(_) => Some("leave `--order`, `--exchange`, `--graph`, `--delay` and `--leader` out"),
         }
     }
 }
@@ -112,11 +127,12 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<S
     }
     let status = tried.map_or(Status::Fine, |tried| told(&tried));
     if let Some(file) = &options.file {
-        let file = shown(file);
+        let (file, pasted) = (shown(file), for_shell(&shown(file).to_string()));
         match status {
-            Status::Fine => console.line(format_args!("wrote {file}; next: forwardstep run {file}")),
-            _ => console
-                .line(format_args!("wrote {file}; next: change what its first lines say, then forwardstep run {file}")),
+            Status::Fine => console.line(format_args!("wrote {file}; next: forwardstep run {pasted}")),
+            _ => console.line(format_args!(
+                "wrote {file}; next: change what its first lines say, then forwardstep run {pasted}"
+            )),
         }
     }
     Ok(status)
@@ -227,7 +243,15 @@ fn robot(name_or_path: &str, scenario: Option<&Path>, kinds: &Kinds) -> Result<R
         return Ok(known);
     }
     let options = UrdfOptions { friction: FrictionPolicy::Ignore, ..UrdfOptions::default() };
-    let robot = open_robot(name_or_path, &options).map_err(|error| complain(&error))?;
+    let robot = open_robot(name_or_path, &options).map_err(|error| match error {
+        OpenRobotError::Unknown { name } => {
+            let kinds = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some());
+            let all: Vec<&str> = kinds.chain(SHIPPED_ROBOTS.map(|(name, _)| name)).collect();
+            let known = choose(&name.replace('-', "_"), "robots are", &all);
+            complain(&NoRobot { name, known })
+        }
+        error => complain(&error),
+    })?;
     let has_friction = robot.notices.iter().any(|notice| matches!(notice.kind, NoticeKind::FrictionIgnored { .. }));
     let path = Path::new(name_or_path);
     let is_elsewhere = scenario.and_then(Path::parent).is_some_and(|folder| !folder.as_os_str().is_empty());

@@ -32,6 +32,10 @@ mod read;
 mod tests;
 mod write;
 
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
 use super::summary::Summary;
@@ -113,6 +117,13 @@ impl Chain {
         half.copy_from_slice(&self.0[..16]);
         half
     }
+}
+
+/// Whether the file at `path` begins as a journal does, whole or torn.
+pub(crate) fn is_one(path: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(MAGIC.len() as u64).read_to_end(&mut first));
+    read.is_ok() && MAGIC.starts_with(&first)
 }
 
 /// The first twenty bytes.

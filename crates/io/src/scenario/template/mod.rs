@@ -182,7 +182,9 @@ const HEAD: &str = "\
 
 /// A line with its comment in the column that the shipped scenarios use.
 fn commented(line: &str, comment: &str) -> String {
-    format!("{line:51} # {comment}\n")
+    let (line, below) =
+        line.split_once('\n').map_or((line, String::new()), |(line, below)| (line, format!("{below}\n")));
+    format!("{line:51} # {comment}\n{below}")
 }
 
 /// A text as TOML.

@@ -16,7 +16,7 @@ const SHARE_OF_RANGE: f64 = 0.7;
 pub struct RobotTemplate {
     /// What its agents are called.
     pub name: &'static str,
-    /// The line that says it: `robot.key = { … }`.
+    /// The line that says it, `robot.key = { … }`, or several.
     pub line: String,
     /// The comment beside it.
     pub says: &'static str,
@@ -86,13 +86,17 @@ impl TaskTemplate {
     }
 }
 
+/// What is below the file of a robot whose friction is left out.
+const IGNORED: &str = "\nrobot.urdf.friction = \"ignore\"";
+
 impl RobotTemplate {
     /// A robot from a URDF beside the scenario, or a shipped one; whether it has Coulomb friction, which is then left out.
     pub fn urdf(file: &str, has_friction: bool, robot: &RobotSetup) -> Self {
-        let friction = if has_friction { ", friction = \"ignore\"" } else { "" };
+        let friction = if has_friction { IGNORED } else { "" };
         RobotTemplate {
             name: "arm",
-            line: format!("robot.urdf = {{ file = {}{friction} }}", quoted(file)),
+            // A key of its own for each, so that another one can stand below.
+            line: format!("robot.urdf.file = {}{friction}", quoted(file)),
             says: "beside this file, or shipped: ur5e.urdf, panda.urdf",
             starts: robot.axes.iter().map(|axis| start_within(axis.position_limits)).collect(),
             law: LawTemplate::Adaptive,
@@ -104,9 +108,10 @@ impl RobotTemplate {
     /// The same robot with dry friction, as its file states it or 0.5 N m; `None` for one that has no joints to rub.
     pub fn rubbing(mut self) -> Option<Self> {
         let friction = self.dry_friction?;
-        let line = self.line.strip_suffix(" }")?;
-        let line = line.strip_suffix(", friction = \"ignore\"").unwrap_or(line);
-        self.line = format!("{line}, {friction} }}");
+        self.line = match self.line.strip_suffix(" }") {
+            Some(table) => format!("{table}, {friction} }}"),
+            None => format!("{}\nrobot.urdf.{friction}", self.line.trim_end_matches(IGNORED)),
+        };
         self.dry_friction = None;
         Some(self)
     }
