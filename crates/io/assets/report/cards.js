@@ -144,8 +144,8 @@ const spansDecades = (series) => {
 
 const balances = {
   v: { columns: signals.lyapunov, log: true, unit: index.energy },
-  sum: { columns: signals.balance_sum, log: false, unit: `${index.energy && `${index.energy}, `}flat when the proof’s identity holds` },
-  error: { columns: signals.balance_residual, log: true, unit: "of V(0)" },
+  sum: { columns: signals.balance_sum, log: false, unit: index.energy, said: `${index.energy && `${index.energy}, `}flat when the proof’s identity holds` },
+  error: { columns: signals.balance_residual, log: true, unit: "V(0)", said: "of V(0)" },
 };
 
 const cards = {
@@ -197,10 +197,10 @@ const cards = {
   balance: {
     picks: [{ id: "balance", name: "what is drawn", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
     build: ([which]) => {
-      const { columns, unit } = balances[which];
+      const { columns, unit, said } = balances[which];
       // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
       const log = balances[which].log && spansDecades(ofAgents(columns, null, {}, true));
-      return { unit, log, series: ofAgents(columns, null, {}, log) };
+      return { unit, said, log, series: ofAgents(columns, null, {}, log) };
     },
   },
   cascade: {

@@ -2,7 +2,7 @@
 
 const runs = index.runs.map((run, k) => {
   const data = dataOf(run, document.getElementById(`block-${k}`).textContent);
-  return { ...run, k, data, picture: pictureIn(run, data, run.agents), shown: true };
+  return { ...run, k, data, picture: pictureIn(run, data, run.agents, (name) => colour(name, document.querySelector(`.scene.run${k}`))), shown: true };
 });
 const runColour = (run) => colour(`--run${run.k}`);
 
@@ -64,7 +64,8 @@ const fillCard = (mine) => {
   mine.pick.replaceChildren(...(mine.common.length > 1 ? [entry] : []), ...(mine.id === "position" ? [] : [scale]));
   const found = mine.all.flatMap(({ run, quantity }) => quantity.entries.filter((e) => e.name === mine.chosen).map((e) => ({ run, entry: e })));
   const units = [...new Set(found.map(({ entry: { unit } }) => unit))];
-  mine.unit.textContent = units.join("") ? ` ${units.join(" beside ")}` : "";
+  // What has no unit stands beside what has one.
+  mine.unit.textContent = units.join("") ? ` ${units.map((unit) => unit || "no unit").join(" beside ")}` : "";
   mine.series = found.flatMap(({ run, entry: e }) => e.lines.map(({ series, style }) => ({ ...LINES[style], run, label: run.name + SUFFIX[style], colour: runColour(run), show: run.shown, values: valuesOf(run, series, mine.log) })));
   if (mine.series.every((s) => s.values.every((v) => v === null))) {
     mine.canvas.append(element("p", { className: "none", textContent: "no value can be drawn: all are zero or not finite" }));
@@ -169,7 +170,7 @@ const side = (() => {
   const later = () => (calm.matches ? setTimeout(() => requestAnimationFrame(step), 480) : requestAnimationFrame(step));
   const step = (stamp) => {
     if (!now.playing) return;
-    const passed = Math.min(calm.matches ? 1 : 0.1, Math.max(0, (stamp - now.since) / 1000));
+    const passed = Math.min(calm.matches ? 1 : 0.5, Math.max(0, (stamp - now.since) / 1000));
     now.since = stamp;
     now.t = Math.min(end, now.t + passed * Number(rate.value));
     if (asked) cancelAnimationFrame(asked);

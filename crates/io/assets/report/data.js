@@ -70,7 +70,7 @@ const element = (tag, properties = {}, ...children) => {
   e.append(...children);
   return e;
 };
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const colour = (name, within = document.documentElement) => getComputedStyle(within).getPropertyValue(name).trim();
 const RAMP = 16;
 const ramp = (k, n) => colour(`--r${n > 1 ? Math.round((k * (RAMP - 1)) / (n - 1)) : RAMP / 2}`);
 

@@ -31,7 +31,8 @@ const cell = (text) => `"${String(text).replace(/^[=+\-@\t\r]/, "'$&").replaceAl
 const withUnit = (plot, { label, unit = plot.unit }) => (unit ? `${label} in ${unit}` : label);
 const csvOf = (plot) => {
   const series = shownSeries(plot);
-  const rows = plot.data[0].map((t, i) => [t, ...series.map(({ k }) => single(plot.data[k][i]))].join(","));
+  // Times may be a typed array, whose own map() would make numbers of the lines.
+  const rows = Array.from(plot.data[0], (t, i) => [t, ...series.map(({ k }) => single(plot.data[k][i]))].join(","));
   return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, s)))].join(","), ...rows, ""].join("\n");
 };
 
@@ -61,14 +62,27 @@ const titleOf = (card) => {
   return [...heading.childNodes].map((part) => part.textContent.trim()).filter(Boolean).join(", ");
 };
 
+// A curve in a plane or in space has two or three columns.
+const curvesWords = (plot) => {
+  const count = plot.curves?.() ?? shownSeries(plot).length;
+  return count === 1 ? "1 curve" : `${count} curves`;
+};
+
+const labelled = (card, plot) =>
+  card.querySelector(".canvas").setAttribute("aria-label", `${wholeTitleOf(card)}: ${curvesWords(plot)} over ${number(whole[1])} s; their numbers are in the table below`);
+
+// What leaves the page says what was chosen on it: the joint, the agent, the derivative.
+const chosenOf = (card) => card.querySelector(".picked")?.textContent ?? "";
+const wholeTitleOf = (card) => [titleOf(card), chosenOf(card)].filter(Boolean).join(", ");
+
 // Buttons and a table under a plot; called whenever it is drawn anew.
 const offer = (card, plot) => {
   card.querySelector(".exports")?.remove();
-  const title = titleOf(card);
+  const title = wholeTitleOf(card);
   const canvas = card.querySelector(".canvas");
   canvas.setAttribute("role", "img");
-  canvas.setAttribute("aria-label", `${title}: ${shownSeries(plot).length} curves over ${number(whole[1])} s; their numbers are in the table below`);
-  const name = card.dataset.plot.replace(/[^a-z0-9-]/gi, "-");
+  labelled(card, plot);
+  const name = [card.dataset.plot, chosenOf(card)].filter(Boolean).join(" ").replace(/[^\p{L}\p{M}\p{N}-]+/gu, "-");
   const button = (text, label, onclick) => {
     const made = element("button", { type: "button", textContent: text, onclick });
     made.setAttribute("aria-label", label);

@@ -43,7 +43,7 @@ const fill = (card, height) => {
   mine.picks = drawPicks(card, spec, mine.picks);
   const built = spec.build(mine.picks);
   const unit = card.querySelector(".unit") ?? card.querySelector("h3").appendChild(element("span", { className: "unit" }));
-  unit.textContent = built.unit ? ` ${built.unit}` : "";
+  unit.textContent = (built.said ?? built.unit) ? ` ${built.said ?? built.unit}` : "";
   const times = data.t(built.grid ?? "main");
   if (built.series.length === 0 || times.length === 0) return empty(card.dataset.empty || (card.dataset.plot === "disagreement" && "nothing was recorded"));
   if (built.series.every((s) => s.values.every((v) => v === null))) return empty("no value can be drawn: all are zero or not finite");
@@ -199,6 +199,7 @@ const showAgents = () => {
       plot.setSeries(k + 1, { show: shownAgents.has(s.agent) });
     });
   }
+  for (const [card, { plot }] of state) if (plot && card.querySelector(".exports")) labelled(card, plot);
   refreshTables();
 };
 

@@ -109,7 +109,7 @@ const targetPoint = (body, place) => {
 };
 
 // Paths of all, at so many rows that they can be drawn again and again.
-const TRAIL_ROWS = Math.max(2, Math.min(sceneTimes.length, bodies.length > 40 ? 24 : 240));
+const TRAIL_ROWS = Math.max(2, Math.min(sceneTimes.length, bodies.length > 40 ? 24 : bodies.length > 6 ? 240 : 960));
 const trailRow = (k) => (TRAIL_ROWS < 2 ? 0 : Math.round((k * (sceneTimes.length - 1)) / (TRAIL_ROWS - 1)));
 const paths = (of) => {
   const kept = new Map();

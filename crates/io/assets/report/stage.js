@@ -114,9 +114,9 @@ const stage = (() => {
   const later = () => (calm.matches ? setTimeout(() => requestAnimationFrame(step), 480) : requestAnimationFrame(step));
   const step = (stamp) => {
     if (!now.playing) return;
-    // A frame that took long does not make time jump by more than a tenth of a second.
+    // The rate is kept where frames take long; a page that was asleep does not jump by more than half a second.
     if (!calm.matches) noticeSlowness(stamp - now.since);
-    const passed = Math.min(calm.matches ? 1 : 0.1, Math.max(0, (stamp - now.since) / 1000));
+    const passed = Math.min(calm.matches ? 1 : 0.5, Math.max(0, (stamp - now.since) / 1000));
     now.since = stamp;
     now.t = Math.min(end, now.t + passed * Number(rate.value));
     if (asked) cancelAnimationFrame(asked);

@@ -56,7 +56,7 @@ const talk = (() => {
   };
   const heading = () => {
     const [name, unit] = [host.querySelector("h3").firstChild.textContent, host.querySelector(".unit")?.textContent.trim()];
-    return unit ? `${name}, in ${unit}` : name;
+    return [name, unit && `in ${unit}`, chosenOf(host)].filter(Boolean).join(", ");
   };
   const plotNow = () => state.get(host)?.plot ?? null;
 

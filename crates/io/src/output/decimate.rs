@@ -112,22 +112,30 @@ fn split(rows_t_s: &[f64], break_points: &[f64]) -> Vec<Break> {
 }
 
 impl Break {
-    /// Values just before and just after. A jump is told from a slope by continuing both sides to the break-point; what is
-    /// drawn are recorded values, held up to the jump, or a line where there is none.
+    /// Values just before and just after. A jump is told from a slope, and from a bend where rows suffice, by continuing both sides to
+    /// the break-point; what is drawn are recorded values, held up to the jump, or a line where there is none.
     fn sides(&self, rows_t_s: &[f64], value: impl Fn(usize) -> f64, may_jump: bool) -> [f64; 2] {
         let (left, right) = (self.before.end - 1, self.after.start);
         if self.on.len() > 1 {
             return [value(self.on.start), value(self.on.end - 1)];
         }
-        let jump = may_jump && {
-            let continued = |near: usize, far: usize| {
-                let slope = (value(near) - value(far)) / (rows_t_s[near] - rows_t_s[far]);
-                value(near) + slope * (self.t_s - rows_t_s[near])
+        // Of one row alone there is no slope, so that nothing tells a jump from a bend.
+        let jump = may_jump && self.before.len() > 1 && self.after.len() > 1 && {
+            let slope = |near: usize, far: usize| (value(near) - value(far)) / (rows_t_s[near] - rows_t_s[far]);
+            let line = |near: usize, far: usize| value(near) + slope(near, far) * (self.t_s - rows_t_s[near]);
+            // What the slope changes by from one pair of rows to the next bends the line.
+            let curve = |near: usize, next: usize, far: usize| {
+                let bend = (slope(near, next) - slope(next, far)) / (rows_t_s[near] - rows_t_s[far]);
+                line(near, next) + bend * (self.t_s - rows_t_s[near]) * (self.t_s - rows_t_s[next])
             };
-            let from_left = if self.before.len() > 1 { continued(left, left - 1) } else { value(left) };
-            let from_right = if self.after.len() > 1 { continued(right, right + 1) } else { value(right) };
             let difference = (value(right) - value(left)).abs();
-            difference > 0.0 && (from_right - from_left).abs() >= 0.5 * difference
+            // Where a signal turns, both sides are alike and say nothing of how much it changes from row to row.
+            let usual = (value(left) - value(left - 1)).abs().max((value(right) - value(right + 1)).abs());
+            let apart = |left: f64, right: f64| (right - left).abs() >= 0.5 * difference.max(usual);
+            let bends = self.before.len() > 2 && self.after.len() > 2;
+            difference > 0.0
+                && apart(line(left, left - 1), line(right, right + 1))
+                && (!bends || apart(curve(left, left - 1, left - 2), curve(right, right + 1, right + 2)))
         };
         match (self.on.clone().next(), jump) {
             (Some(on), false) => [value(on), value(on)],
@@ -175,6 +183,20 @@ mod tests {
         assert_eq!((drawn[at[0]], drawn[at[1]]), (1.2, 5.3));
         let smooth = grid.sample(&t_s, &t_s, true);
         assert_eq!((smooth[at[0]], smooth[at[1]]), (0.25, 0.25));
+    }
+
+    /// A torque between two switches that stand nearer than rows has no slope, and one that turns has a bend.
+    #[test]
+    fn regress_a_bend_between_few_rows_is_no_jump() {
+        let t_s = rows(21, 0.05);
+        let bent: Vec<f64> = t_s.iter().map(|t| (9.0 * t).sin()).collect();
+        for breaks in [&[0.47, 0.52, 0.57][..], &[0.5], &[0.52]] {
+            let grid = Grid::new(&t_s, breaks, 200);
+            let drawn = grid.sample(&t_s, &bent, true);
+            for k in (1..grid.t_s.len()).filter(|k| grid.t_s[*k] == grid.t_s[*k - 1]) {
+                assert_eq!(drawn[k], drawn[k - 1], "{breaks:?} at {}", grid.t_s[k]);
+            }
+        }
     }
 
     #[test]

@@ -29,7 +29,7 @@ pub(crate) fn injected(record: &RunRecord<'_>) -> Markup {
         section #injected {
             h2 { "What changed V" }
             div.card.scroll {
-                h3 { "Energy put into V by each cause, in J or the unit of V" span.by { (Source::Derived.words()) } }
+                h3 { "Energy put into V by each cause, in J or the unit of V" " " span.by { (Source::Derived.words()) } }
                 table.numbers {
                     thead { tr {
                         th {} th { "V at the start" }

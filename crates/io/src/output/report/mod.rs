@@ -195,7 +195,7 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
 fn card(id: &str, title: &str, what: &str, empty: &str) -> Markup {
     html! {
         article.card.plot data-plot=(id) data-empty=(empty) {
-            div.head { h3 { (title) span.by { (what) } } div.pick {} }
+            div.head { h3 { (title) " " span.by { (what) } } div.pick {} }
             div.canvas {}
         }
     }
@@ -216,11 +216,11 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
                 (network::graphs(record.setup, timeline))
             }
             article.card.plot data-plot="gantt" {
-                div.head { h3 { "Active edges" span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
+                div.head { h3 { "Active edges" " " span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
                 div.canvas {}
             }
             article.card.plot data-plot="delay" data-empty="no edge has a delay" {
-                div.head { h3 { "Delays" span.by { "T(t)" } } div.pick {} }
+                div.head { h3 { "Delays" " " span.by { "T(t)" } } div.pick {} }
                 div.canvas {}
             }
             (network::links(record))
@@ -230,11 +230,11 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
 
 /// The agents' colours as CSS variables and classes, for both grounds.
 fn colours(setup: &Setup) -> String {
-    colours_of(setup.agents.len(), network::vertices(setup))
+    colours_of("", setup.agents.len(), network::vertices(setup))
 }
 
-/// The same of so many agents; vertices beyond them are leaders.
-fn colours_of(agents: usize, vertices: usize) -> String {
+/// The same of so many agents, within what a selector finds; vertices beyond them are leaders.
+fn colours_of(within: &str, agents: usize, vertices: usize) -> String {
     let variables = |ground| -> String {
         let agent = (0..agents).map(|k| format!("--a{k}:{};", palette::css(palette::agent(k, agents, ground))));
         let ramp = (0..RAMP).map(|k| format!("--r{k}:{};", palette::css(palette::ramp(k, RAMP, ground))));
@@ -244,7 +244,7 @@ fn colours_of(agents: usize, vertices: usize) -> String {
     };
     let classes: String = (0..vertices).map(|k| format!(".a{k}{{--c:var(--a{k})}}")).collect();
     format!(
-        ":root{{{}}}@media screen and (prefers-color-scheme:dark){{:root:not(.printing){{{}}}}}{classes}",
+        ":root{within}{{{}}}@media screen and (prefers-color-scheme:dark){{:root:not(.printing){within}{{{}}}}}{classes}",
         variables(Ground::Light),
         variables(Ground::Dark)
     )

@@ -21,7 +21,7 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             h2 { "Practical" }
             div.beside {
                 div.card {
-                    h3 { "Before the run" span.by { (Source::Derived.words()) } }
+                    h3 { "Before the run" " " span.by { (Source::Derived.words()) } }
                     @if verdicts.is_empty() { p.note { "Nothing is said." } }
                     ul.hypotheses {
                         @for finding in &verdicts {
@@ -38,7 +38,7 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     }
                 }
                 div.card {
-                    h3 { "Watched" span.by { "at rows of the recording" } }
+                    h3 { "Watched" " " span.by { "at rows of the recording" } }
                     table.facts { tbody { (watched(record, metrics)) } }
                 }
             }

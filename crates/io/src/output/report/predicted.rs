@@ -22,7 +22,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         section #predicted {
             h2 { "Predicted and observed" }
             div.card.scroll {
-                h3 { "Agreement" span.by { "predicted from the reference dynamics alone: robots that follow them exactly, s ≡ 0" } }
+                h3 { "Agreement" " " span.by { "predicted from the reference dynamics alone: robots that follow them exactly, s ≡ 0" } }
                 @match &prediction.course {
                     PredictedCourse::NoneSince(reason) => p.note { "The course of agreement is not predicted, since " (prose(reason)) "." },
                     PredictedCourse::Found(course) => {
@@ -110,7 +110,7 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
     let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
     html! {
         div.card.scroll {
-            h3 { "Peak torque" span.by { "predicted with the true parameters along the reference; an indication where estimates start within 20 % of them" } }
+            h3 { "Peak torque" " " span.by { "predicted with the true parameters along the reference; an indication where estimates start within 20 % of them" } }
             table.numbers {
                 thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th { "estimate starts off by" } } }
                 tbody { @for peak in course.peak_torques.iter().take(MOST_TORQUES) {

@@ -66,7 +66,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
             h2 { "Promised and happened" }
             div.beside {
                 div.card {
-                    h3 { "Promised" span.by { (report.theorem) " · " (report.theorem.source().words()) } }
+                    h3 { "Promised" " " span.by { (report.theorem) " · " (report.theorem.source().words()) } }
                     p.promise { (prose(&report.promises)) }
                     @if report.hypotheses.is_empty() { p.note { "No hypotheses were checked." } }
                     ul.hypotheses {
@@ -251,7 +251,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
             h2 { "Loads and limits" }
             @if metrics.peak_torques.is_empty() { p.note { "No torques or forces were recorded." } } @else {
                 div.card.scroll {
-                    h3 { "Peak " (names::input_words(setup).0) span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
+                    h3 { "Peak " (names::input_words(setup).0) " " span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
                         thead { tr { th {} @for axis in 0..most_axes { th { (shared_words(setup, axis, names::torque_words)) } } } }
                         tbody {
@@ -268,7 +268,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 }
             }
             div.card.scroll #limits {
-                h3 { "Limits" span.by { "reported; enforced only where the scenario asks for it" } }
+                h3 { "Limits" " " span.by { "reported; enforced only where the scenario asks for it" } }
                 @if metrics.limits_reached.is_empty() { p.note { "No known limit was exceeded." } } @else {
                     table.numbers {
                         thead { tr { th { "Joint" } th { "limit" } th { "value" } th { "worst" } th { "exceeded by" } th { "first at" } th { "of the rows" } th { "enforced" } } }

@@ -29,7 +29,7 @@ const PICTURE_JS: [&str; 5] = [
     include_str!("../../../assets/report/flights.js"),
     include_str!("../../../assets/report/graph.js"),
 ];
-const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents) => {\n";
+const BEGIN_PICTURE: &str = "const pictureIn = (index, data, agents, colour) => {\n";
 const END_PICTURE: &str = "return { bodies, scene, world, charted, floorGrid, camera, frameAt, looking, heardAt, graphWords, lostWords, trailPoint, sceneColours, \
                            drawUnder, drawSolids, drawTrails, drawMarks, drawEdges, drawWords };\n};\n";
 /// What leaves the page, and the page itself.
@@ -52,8 +52,12 @@ pub(crate) fn side_by_side(comparison: &Comparison, runs: &[Compared<'_>]) -> St
         runs.iter().map(|run| side_data(run.name, run.record)).unzip();
     let last = |run: &Compared<'_>| run.record.outcome.recording.t_s.last().copied().unwrap_or(0.0);
     let index = Index { until_s: runs.iter().map(last).fold(0.0, f64::max), break_points: Vec::new(), runs: indices };
-    let agents = runs.iter().map(|run| run.record.setup.agents.len()).max().unwrap_or(0);
-    let vertices = runs.iter().map(|run| network::vertices(run.record.setup)).max().unwrap_or(0);
+    // Each picture has as many colours as its run has agents.
+    let colours = |(k, run): (usize, &Compared<'_>)| {
+        let setup = run.record.setup;
+        colours_of(&format!(" .scene.run{k}"), setup.agents.len(), network::vertices(setup))
+    };
+    let colours: String = runs.iter().enumerate().map(colours).collect();
     let names: Vec<&str> = runs.iter().map(|run| run.name).collect();
     let title = names.join(" beside ");
     html! {
@@ -69,7 +73,7 @@ pub(crate) fn side_by_side(comparison: &Comparison, runs: &[Compared<'_>]) -> St
                 style { (PreEscaped(UPLOT_CSS)) }
                 style {
                     (PreEscaped(PAGE_CSS)) (PreEscaped(STAGE_CSS)) (PreEscaped(SIDE_CSS))
-                    (PreEscaped(colours_of(agents, vertices))) (PreEscaped(run_colours(runs.len())))
+                    (PreEscaped(colours)) (PreEscaped(run_colours(runs.len())))
                 }
             }
             body {
@@ -131,7 +135,7 @@ fn space(comparison: &Comparison) -> Markup {
             div.scenes tabindex="0" role="application" aria-roledescription="pictures in space" aria-describedby="view-help" {
                 @for (k, run) in comparison.runs.iter().enumerate() {
                     article.card.scene.(format!("run{k}")) {
-                        h3 { span.dot {} (run.name) span.by { (run.title) } }
+                        h3 { span.dot {} (run.name) " " span.by { (run.title) } }
                         div.view {}
                         p.note.words {}
                     }

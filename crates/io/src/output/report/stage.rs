@@ -78,7 +78,7 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                 }
                 (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
                 div.card #graph-now {
-                    div.head { h3 { "Who hears whom" span.by #graph-when {} } }
+                    div.head { h3 { "Who hears whom" " " span.by #graph-when {} } }
                     div #graph-picture {}
                     p.note #graph-words {}
                 }
