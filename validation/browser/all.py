@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Runs all checks of pages, side by side: most of their time they wait. What measures speed comes last, alone.
+"""Runs checks of pages, side by side: most of their time they wait. With FORWARDSTEP_LONG all of them, and what measures speed last, alone.
 
     validation/browser/all.py target/release/forwardstep
 
 Status 77 where chromium or chromedriver is not there. Needs nothing but Python.
 """
 
+import os
 import pathlib
 import subprocess
 import sys
@@ -14,8 +15,10 @@ import webdriver
 from checks import NO_BROWSER
 from pages import SCENARIOS
 
-BESIDE = [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]], ["stage.py"], ["compare.py"], ["follow.py"]]
-ALONE = [["speed.py"]]
+LONG = "FORWARDSTEP_LONG" in os.environ
+BESIDE = [["stage.py"], ["compare.py"], ["follow.py"]]
+BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", *SCENARIOS[::3]]]
+ALONE = [["speed.py"]] if LONG else []
 
 
 def begun(check):

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::support::{is_long, some};
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
 
 fn book() -> PathBuf {
@@ -106,7 +107,7 @@ fn the_gallery_misses_no_scenario() {
 #[test]
 fn every_listing_does_what_the_book_says() {
     let mut commands = 0;
-    for chapter in chapters() {
+    for chapter in some(chapters(), 3) {
         let text = fs::read_to_string(book().join(&chapter)).unwrap();
         let folder = tempfile::tempdir().unwrap();
         for (kind, lines) in blocks(&text) {
@@ -121,5 +122,5 @@ fn every_listing_does_what_the_book_says() {
             }
         }
     }
-    assert!(commands > 20, "{commands}");
+    assert!(commands > if is_long() { 20 } else { 5 }, "{commands}");
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::support::{folder, forwardstep, stdout};
+use crate::support::{folder, forwardstep, is_long, some, stdout};
 
 /// A number of the summary.
 fn count(said: &str, words: &str) -> u64 {
@@ -13,12 +13,16 @@ fn count(said: &str, words: &str) -> u64 {
 #[test]
 fn nothing_is_refuted_in_a_minute() {
     let folder = folder();
-    let said = stdout(&forwardstep(&folder, &["falsify", "--seconds", "60", "--cases", "2000", "--seed", "7"]).code(0));
+    // A quarter of one, unless there is time.
+    let [seconds, least] = if is_long() { ["60", "10"] } else { ["15", "2"] };
+    let arguments = ["falsify", "--seconds", seconds, "--cases", "2000", "--seed", "7"];
+    let said = stdout(&forwardstep(&folder, &arguments).code(0));
+    let least: u64 = least.parse().unwrap();
     assert_eq!(count(&said, "refuted"), 0, "{said}");
     // However slow the machine, some of each kind were judged.
-    assert!(count(&said, "whose spread never grew") > 10, "{said}");
-    assert!(count(&said, "whose spread shrank at least by what is guaranteed") > 5, "{said}");
-    assert!(count(&said, "whose error falls") > 10, "{said}");
+    assert!(count(&said, "whose spread never grew") > least, "{said}");
+    assert!(count(&said, "whose spread shrank at least by what is guaranteed") > least / 2, "{said}");
+    assert!(count(&said, "whose error falls") > least, "{said}");
     assert!(count(&said, "that came to the value that is predicted") > 0, "{said}");
     assert!(!folder.path().join("forwardstep-refuted").exists());
 }
@@ -26,10 +30,10 @@ fn nothing_is_refuted_in_a_minute() {
 #[test]
 fn the_same_seed_draws_the_same_cases() {
     let folder = folder();
-    let said = |seed: &str| stdout(&forwardstep(&folder, &["falsify", "--cases", "24", "--seed", seed]).code(0));
+    let said = |seed: &str| stdout(&forwardstep(&folder, &["falsify", "--cases", "10", "--seed", seed]).code(0));
     assert_eq!(said("3"), said("3"));
     assert_ne!(said("3"), said("4"));
-    assert!(said("3").starts_with("24 cases of seed 3\n"));
+    assert!(said("3").starts_with("10 cases of seed 3\n"));
 }
 
 #[test]
@@ -43,7 +47,7 @@ fn a_folder_that_cannot_be_written_to_is_no_matter_while_nothing_is_refuted() {
 fn attack_finds_a_network_over_which_a_broken_hypothesis_matters() {
     let folder = folder();
     // With these seeds soon.
-    for (target, seed, id) in [
+    let targets = [
         ("a1-first-roots", "1", "common-first-root"),
         ("24-complex-roots", "1", "real-roots"),
         ("119-weights", "1", "constant-weights"),
@@ -51,7 +55,8 @@ fn attack_finds_a_network_over_which_a_broken_hypothesis_matters() {
         ("110-late-turns", "6", "fixed-graph, no-delay"),
         ("122-turns", "1", "fixed-graph"),
         ("swarm-turns", "2", "fixed-graph, printed-design, swarm-coupling"),
-    ] {
+    ];
+    for (target, seed, id) in some(targets, 3) {
         // It ends as soon as it has found one: mostly within a minute, on a machine that is busy later.
         let arguments = ["attack", target, "--seed", seed, "--seconds", "300", "--out", "found.toml"];
         let said = stdout(&forwardstep(&folder, &arguments).code(0));

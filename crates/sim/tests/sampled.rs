@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::cases::{cases, setup};
+use crate::common::some;
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter};
 use forwardstep_core::law::SlotineLi;
@@ -60,7 +61,7 @@ fn gap(a: &Outcome, b: &Outcome) -> f64 {
 
 #[test]
 fn prop_sampled_runs_converge_to_the_continuous_one_with_the_period() {
-    for case_name in cases().iter().map(|case| case.name.clone()) {
+    for case_name in some(cases().iter().map(|case| case.name.clone()), 4) {
         let mut setup = case(&case_name, 4.0);
         let continuous = run(&setup);
         // From rates that resolve the roots, the damping and the shortest delays of the cases.

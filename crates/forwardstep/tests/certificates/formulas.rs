@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::{RING, judged, masses, outcome_of_pair};
-use crate::support::{folder, forwardstep, stdout};
+use crate::support::{folder, forwardstep, is_long, some, stdout};
 
 fn accepted(scenario: &str, id: &str, answer: &str) {
     assert_eq!(judged(scenario, id), (answer.to_owned(), "accepted".to_owned()), "{id}: {scenario}");
@@ -98,15 +98,18 @@ fn constants_that_are_not_rational_are_certified() {
 /// Roots of quotients of polynomials are bounded by their squares, however they are written and whatever they are divided by.
 #[test]
 fn leaders_delays_and_weights_with_roots_are_certified_and_refuted() {
-    for (motion, gain) in [
-        ("sqrt(1 + t + t^2)", "1.3"),
-        ("sqrt(t^2 - 6*t + 11)", "3"),
-        ("sqrt(2 + (t - 3)^2)/(1 + t)", "9"),
-        ("sqrt(1 + t)*cos(sqrt(1 + t))", "3"),
-        ("t/(1 + t + t^2)^0.5", "3"),
-        ("sqrt(2 + t)*exp(-t)", "9"),
-        ("sqrt((1 + t)/(2 + t))", "2"),
-    ] {
+    for (motion, gain) in some(
+        [
+            ("sqrt(1 + t + t^2)", "1.3"),
+            ("sqrt(t^2 - 6*t + 11)", "3"),
+            ("sqrt(2 + (t - 3)^2)/(1 + t)", "9"),
+            ("sqrt(1 + t)*cos(sqrt(1 + t))", "3"),
+            ("t/(1 + t + t^2)^0.5", "3"),
+            ("sqrt(2 + t)*exp(-t)", "9"),
+            ("sqrt((1 + t)/(2 + t))", "2"),
+        ],
+        3,
+    ) {
         let text = led(&format!("formulas = [\"{motion}\"]"), gain);
         accepted(&text, "bounded-leader", "holds");
         accepted(&text, "sign-gain", "holds");
@@ -239,7 +242,8 @@ impl Draws {
 fn prop_no_claim_about_drawn_formulas_is_rejected() {
     let mut draws = Draws(1);
     let mut claims = 0;
-    for case in 0..60 {
+    let cases = if is_long() { 60 } else { 20 };
+    for case in 0..cases {
         let depth = 1 + case % 3;
         let formula = draws.formula(depth);
         let (text, id) = match case % 4 {
@@ -253,7 +257,7 @@ fn prop_no_claim_about_drawn_formulas_is_rejected() {
             claims += usize::from(answer == "holds" || answer == "violated");
         }
     }
-    assert!(claims > 15, "{claims}");
+    assert!(claims > cases / 4, "{claims}");
 }
 
 /// Whoever wants a certificate hears from the program itself what it could not prove.

@@ -9,6 +9,16 @@ use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 use tempfile::TempDir;
 
+/// Every so many of these, and all of them where `.ci/long` asks for that.
+pub fn some<T>(all: impl IntoIterator<Item = T>, every: usize) -> impl Iterator<Item = T> {
+    all.into_iter().step_by(if is_long() { 1 } else { every })
+}
+
+/// Whether tests may take as long as before a release.
+pub fn is_long() -> bool {
+    std::env::var_os("FORWARDSTEP_LONG").is_some()
+}
+
 pub fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }

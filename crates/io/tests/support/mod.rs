@@ -20,6 +20,11 @@ use forwardstep_sim::{
     Signal, Solver, Start, TimeSpan,
 };
 
+/// Every so many of these, and all of them where `.ci/long` asks for that.
+pub fn some<T>(all: impl IntoIterator<Item = T>, every: usize) -> impl Iterator<Item = T> {
+    all.into_iter().step_by(if std::env::var_os("FORWARDSTEP_LONG").is_some() { 1 } else { every })
+}
+
 /// One agent with `dof` axes and `parameters` estimated parameters.
 pub fn agent(name: &str, dof: usize, parameters: usize) -> AgentSetup {
     let axes = (0..dof).map(|k| Axis {

@@ -25,6 +25,16 @@ use forwardstep_sim::{
 
 pub const RTOL: f64 = 1e-8;
 
+/// Every so many of these, and all of them where `.ci/long` asks for that.
+pub fn some<T>(all: impl IntoIterator<Item = T>, every: usize) -> impl Iterator<Item = T> {
+    all.into_iter().step_by(if is_long() { 1 } else { every })
+}
+
+/// Whether tests may take as long as before a release.
+pub fn is_long() -> bool {
+    std::env::var_os("FORWARDSTEP_LONG").is_some()
+}
+
 pub fn axes(names: &[&str], unit: AxisUnit) -> Vec<Axis> {
     let axis = |name: &&str| Axis {
         name: (*name).into(),
