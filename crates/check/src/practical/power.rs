@@ -185,8 +185,12 @@ pub(super) fn held_w_of(control: &Control, agent: &AgentSetup, gains: &Gains, wa
         let Some((from, to)) = asked(one).zip(asked(next)).filter(|_| took_s > 0.0) else { continue };
         let rate = (to - from) / took_s;
         held += took_s * since * rate.dot(&(&compliance * &rate));
-        let ddq = DVector::from_column_slice(&one.dz);
-        lagging += took_s * lag_s * lag_s * ddq.dot(&(&gains.damping * &ddq));
+        // A transient may be shorter than what is between two states: the larger of both ends.
+        let lag = |state: &Led| {
+            let ddq = DVector::from_column_slice(&state.dz);
+            ddq.dot(&(&gains.damping * &ddq))
+        };
+        lagging += took_s * lag_s * lag_s * lag(one).max(lag(next));
     }
     let drive = (held / span_s).sqrt() + (lagging / span_s).sqrt();
     Some(drive * drive)
