@@ -15,7 +15,7 @@ mod whole_loop;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use std::sync::Arc;
 
-use crate::common::kinds::{alone, blind_mass, chain};
+use crate::common::kinds::{alone, blind_mass, chain, formula, rest_at, tracking};
 use crate::common::{arm, column, edge, masses, run, setup};
 use forwardstep_check::{
     Finding, NoPrediction, NotFixed, PowerBound, SamplingMargin, along, mean_power_w, practical, predict,
@@ -444,4 +444,20 @@ fn an_arm_that_its_motors_cannot_hold_is_told() {
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![3.0, 1e3]);
     let load = load_of(&setup);
     assert!(load.because().contains(" of 3 (arm-2, shoulder)"), "{load:?}");
+}
+
+/// It hangs at its start, and its target leads it through the horizontal, where its shoulder is loaded most.
+#[test]
+fn regress_a_load_on_the_way_to_a_target_counts() {
+    let said = |swing: f64| {
+        let mut agent = arm(0, &[1.0, 2.0]);
+        agent.start.q = vec![-core::f64::consts::FRAC_PI_2, 0.0];
+        agent.robot.axes[0].effort_limit = Some(5.0);
+        let path = rest_at(-core::f64::consts::FRAC_PI_2);
+        let raised = formula((Expression::variable(0) * 0.1).sin_of() * swing - core::f64::consts::FRAC_PI_2);
+        let setup = tracking(agent, vec![if swing > 0.0 { raised } else { path }, rest_at(0.0)]);
+        let load = practical(&setup).findings.into_iter().find(|finding| finding.name() == "static-load");
+        load.unwrap().answer().words()
+    };
+    assert_eq!([said(0.0), said(1.6)], ["adequate", "inadequate"]);
 }

@@ -276,3 +276,17 @@ fn identities_are_printed_along_a_run_and_the_exit_status_says_whether_they_hold
     let stiff = with(&TWO.replace(gains, "damping.gain = 1e14").replace("end_s = 30", "end_s = 2"));
     forwardstep(&stiff, &["explain", "two.toml", "--along"]).code(3);
 }
+
+#[test]
+fn regress_the_degree_of_backstepping_counts_what_its_errors_hold_and_pushes_have_derivatives() {
+    let folder = folder();
+    let explained = |scenario: &str| stdout(&forwardstep(&folder, &["explain", scenario]).success());
+    for (scenario, says) in [
+        ("strict-feedback-order-10", "holds 9: the cascade is of degree 1."),
+        ("strict-feedback", "holds 1: the cascade is of degree 2."),
+        ("pure-feedback", "holds 1: the cascade is of degree 2."),
+        ("gusts", "= τ̇_ext,i + u*_i + 3 τ_ext,i"),
+    ] {
+        assert!(explained(scenario).contains(says), "{scenario}: {}", explained(scenario));
+    }
+}
