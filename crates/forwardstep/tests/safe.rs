@@ -80,7 +80,7 @@ fn regress_files_of_others_under_the_names_of_a_run_stay_where_it_is_replaced() 
         assert_eq!(fs::read_to_string(folder.path().join("run").join(name)).unwrap(), "mine");
         fs::remove_dir_all(folder.path().join("run")).unwrap();
     }
-    // Nobody is told to force what then is refused.
+    // `--force` is not advised where it is refused.
     fs::create_dir(folder.path().join("full")).unwrap();
     fs::write(folder.path().join("full/x"), "mine").unwrap();
     forwardstep(&folder, &["run", "own.toml", "--out", "run"]).code(0);

@@ -11,7 +11,7 @@ fn a_folder_that_is_not_empty_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("thesis.tex"), "years of work").unwrap();
     let refused = RunFolder::create(folder.path(), false).unwrap_err();
-    // Nobody is told to force what would be refused.
+    // `--force` is not advised where it is refused.
     assert!(matches!(refused, OutputError::FolderNotEmpty { replaceable: false, .. }));
     assert!(!refused.help().unwrap().contains("--force"));
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -152,6 +152,7 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
             Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz? })
         };
         let way: Vec<Led> = looked.iter().filter_map(state).collect();
+        let way: Vec<&Led> = way.iter().collect();
         let own = &setup.agents[agent];
         held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;
         agents += 1;

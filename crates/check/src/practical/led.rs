@@ -7,6 +7,7 @@ use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Trajectory;
 
 use super::along::Columns;
+use crate::kinds::is_lagrangian;
 use crate::prediction::reference_alone;
 
 /// States that are looked at in all, and of one agent.
@@ -26,8 +27,14 @@ pub(super) struct Led {
     pub(super) dz: Vec<f64>,
 }
 
+/// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
+pub(super) fn way(setup: &Setup) -> Vec<Led> {
+    let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
+    states(setup, &those)
+}
+
 /// States of `agents` on their way; none where nothing is known of it, or there are too many.
-pub(super) fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
+fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
     let each = (MOST / agents.len().max(1)).min(MOST_OF_ONE);
     if each < 2 {
         return Vec::new();

@@ -9,7 +9,7 @@ use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{Evaluator, Setup};
 
 use super::PracticalAnswer;
-use super::led::states;
+use super::led::Led;
 use super::postures::each_posture;
 use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
@@ -32,8 +32,8 @@ pub struct StaticLoad {
 }
 
 impl StaticLoad {
-    /// Of the agents of a setup under (6)–(7); `None` where no limit is known.
-    pub fn of(setup: &Setup) -> Option<StaticLoad> {
+    /// Of the agents of a setup under (6)–(7), with states on their way; `None` where no limit is known.
+    pub(super) fn on(setup: &Setup, way: &[Led]) -> Option<StaticLoad> {
         let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| limits(setup, *agent).is_some()).collect();
         let mut worst: Option<StaticLoad> = None;
         let (mut postures, mut evaluators) = (0, HashMap::new());
@@ -50,7 +50,7 @@ impl StaticLoad {
         };
         each_posture(setup, &those, |agent, q, _| look(agent, q));
         // A way may lead where no start is.
-        states(setup, &those).iter().for_each(|led| look(led.agent, &led.q));
+        way.iter().filter(|led| those.contains(&led.agent)).for_each(|led| look(led.agent, &led.q));
         worst.map(|found| StaticLoad { postures, ..found })
     }
 

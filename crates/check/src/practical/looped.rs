@@ -13,7 +13,7 @@
 //! - **By itself**, m̄ = 0: neighbours stay where they are. A target has none.
 //! - **In its network**, where that is fixed, nothing is heard late, and all agents have the same J: m̄ = ε m with the eigenvalues ε of D⁻¹W
 //!   gives all multipliers of all agents.
-//! - **In any network** of such agents with late links: let G(μ) = C (μ − J)⁻¹ (B₁ + μ B₂). While the spectral radius of G is at most one on
+//! - **In any fixed network** of such agents with late links: let G(μ) = C (μ − J)⁻¹ (B₁ + μ B₂). While the spectral radius of G is at most one on
 //!   |μ| = 1, and J decays, every mode that passes on means of what is heard decays or stays, since a late link multiplies by
 //!   μ^(−k), which is smaller still outside the circle. G(1) = 1: agreement.
 //!
@@ -58,7 +58,7 @@ pub struct WholeLoop {
     pub rate_per_s: [f64; 2],
     /// The same of all modes of its network, where they can be told.
     pub network_rate_per_s: Option<[f64; 2]>,
-    /// The largest spectral radius of G, and of the ideal loop; nothing where nobody is heard.
+    /// The largest spectral radius of G, and of the ideal loop; nothing where no agent is heard.
     pub passed_on: Option<[f64; 2]>,
     /// Agents that were looked at.
     pub agents: usize,
@@ -85,6 +85,7 @@ impl WholeLoop {
         let shares = shares(setup);
         let alike = shares.is_some() && is_alike(known, &all);
         let mut worst: Option<WholeLoop> = None;
+        let mut agents = 0;
         for &agent in &looked {
             let degree = degree(setup, agent);
             let of_setup = |setup: &Setup| Linear::new(sampled_loop(setup, agent, degree).ok()??, setup);
@@ -94,23 +95,15 @@ impl WholeLoop {
             let shares = shares.as_ref().filter(|_| alike && own.size() <= MOST_STATES);
             let modes = |it: &Linear| shares?.iter().map(|share| it.rate(Some(*share))).try_fold(f64::MIN, larger);
             let passed_on = if degree > 0.0 { pair(&|it| Some(it.passed_on())) } else { None };
+            agents += 1;
             let agent = Named::of(setup, agent);
             let network_rate_per_s = pair(&modes);
-            let found = WholeLoop {
-                agent,
-                period_s,
-                rate_per_s,
-                network_rate_per_s,
-                passed_on,
-                agents: looked.len(),
-                of,
-                end_s,
-            };
+            let found = WholeLoop { agent, period_s, rate_per_s, network_rate_per_s, passed_on, agents, of, end_s };
             if worst.as_ref().is_none_or(|worst| found.answer() > worst.answer()) {
                 worst = Some(found);
             }
         }
-        worst
+        worst.map(|found| WholeLoop { agents, ..found })
     }
 
     /// Inadequate where a mode grows, not shown where one may in some network.

@@ -8,7 +8,7 @@ use forwardstep_sim::{Adaptive, DynamicsAt, Setup};
 
 use super::PracticalAnswer;
 use super::held::{Hold, longest_period_s};
-use super::led::{Led, states};
+use super::led::{Led, way};
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping};
 use crate::hypothesis::Named;
@@ -79,9 +79,15 @@ enum At {
 impl SamplingMargin {
     /// Of the agents of a setup under (6)–(7); `None` when control is continuous, there are none, or no mass matrix can be factored.
     pub fn of(setup: &Setup) -> Option<SamplingMargin> {
+        setup.control.as_ref()?;
+        SamplingMargin::on(setup, &way(setup))
+    }
+
+    /// The same with states on the way of the agents.
+    pub(super) fn on(setup: &Setup, way: &[Led]) -> Option<SamplingMargin> {
         let control = setup.control.as_ref()?;
         let (hold, period_s) = (Hold::of(control), 1.0 / control.sample_hz);
-        let looked = looked(setup);
+        let looked = looked(setup, way);
         let sigma = |looked: &Looked| looked.rates.sigma(hold, period_s);
         let worst_of = |those: &mut dyn Iterator<Item = &Looked>| -> Option<MarginAt> {
             let worst = those.map(|looked| (looked, sigma(looked))).reduce(|a, b| if b.1 > a.1 { b } else { a })?;
@@ -110,7 +116,7 @@ impl SamplingMargin {
     /// The period at which σ of a setup is 1, as [`SamplingMargin::longest_s`], where one near `near_s` is held as `hold` says, whatever its own
     /// control is.
     pub fn longest_period_s(setup: &Setup, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
-        let looked = looked(setup);
+        let looked = looked(setup, &way(setup));
         if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
     }
 
@@ -146,7 +152,7 @@ impl MarginAt {
 }
 
 /// All states at which margins are looked at; of an agent whose M cannot be factored there, none.
-fn looked(setup: &Setup) -> Vec<Looked> {
+fn looked(setup: &Setup, way: &[Led]) -> Vec<Looked> {
     let gains: Vec<Option<Gains>> = (0..setup.agents.len()).map(|agent| gains(setup, agent)).collect();
     let those: Vec<usize> = (0..gains.len()).filter(|agent| gains[*agent].is_some()).collect();
     let mut found = Vec::new();
@@ -158,9 +164,9 @@ fn looked(setup: &Setup) -> Vec<Looked> {
         let at = if at_start { At::Start } else { At::Rest };
         look(agent, resting(setup, agent, q, at_start), at);
     });
-    for Led { agent, t_s, q, dq, dz } in states(setup, &those) {
-        let dz: Vec<f64> = dz.iter().map(|dz| dz + sign(setup, agent).copysign(*dz)).collect();
-        look(agent, dynamics(&setup.agents[agent], &q, &dq, &dz), At::Led { t_s });
+    for Led { agent, t_s, q, dq, dz } in way {
+        let dz: Vec<f64> = dz.iter().map(|dz| dz + sign(setup, *agent).copysign(*dz)).collect();
+        look(*agent, dynamics(&setup.agents[*agent], q, dq, &dz), At::Led { t_s: *t_s });
     }
     found
 }

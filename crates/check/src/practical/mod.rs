@@ -35,6 +35,8 @@ mod words;
 
 use forwardstep_sim::Setup;
 
+use self::led::way;
+use self::loads::limits;
 use crate::instance::designed;
 
 pub use agreement::{AgreementBound, AxisBound};
@@ -188,12 +190,14 @@ impl Practical {
 pub fn practical(setup: &Setup) -> Practical {
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
-    let margin = SamplingMargin::of(setup);
-    let load = StaticLoad::of(setup).map(Finding::StaticLoad);
+    let limited = (0..setup.agents.len()).any(|agent| limits(setup, agent).is_some());
+    let way = if limited || setup.control.is_some() { way(setup) } else { Vec::new() };
+    let margin = SamplingMargin::on(setup, &way);
+    let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
     let whole = WholeLoop::of(setup);
     // What grows has no bound.
     let grows = whole.as_ref().is_some_and(|whole| whole.answer() == PracticalAnswer::Inadequate);
-    let power = PowerBound::of(setup, margin.as_ref()).filter(|_| !grows);
+    let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);

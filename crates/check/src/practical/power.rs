@@ -35,7 +35,7 @@ use forwardstep_sim::{Adaptive, AgentSetup, Control, ReferenceFamily, Setup, Vel
 use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
-use super::led::{Led, states};
+use super::led::Led;
 use super::margin::SamplingMargin;
 use super::rates::{Gains, dynamics};
 use crate::kinds::is_lagrangian;
@@ -82,17 +82,15 @@ pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f6
 }
 
 impl PowerBound {
-    /// Over the whole run of a setup with its sampling margin; `None` where there is nothing that feeds V but its start, or where V(0), a
+    /// Over the whole run of a setup with its sampling margin and states on the way of its agents; `None` where there is nothing that feeds V but its start, or where V(0), a
     /// push or σ is not known before the run.
-    pub fn of(setup: &Setup, margin: Option<&SamplingMargin>) -> Option<PowerBound> {
+    pub(super) fn on(setup: &Setup, margin: Option<&SamplingMargin>, way: &[Led]) -> Option<PowerBound> {
         if !is_fed(setup) {
             return None;
         }
         let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
         let (mut noise_w, mut steps_w, mut held_w) = (0.0, 0.0, 0.0);
         let span_s = setup.time.end_s;
-        let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
-        let led = if setup.control.is_some() { states(setup, &those) } else { Vec::new() };
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
             start_j += start_energy_j(setup, index, &gains)?;
@@ -100,9 +98,9 @@ impl PowerBound {
             friction_w += dry_loss_w(agent).unwrap_or(0.0);
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
             steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
-            let way: Vec<Led> = led.iter().filter(|state| state.agent == index).cloned().collect();
+            let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
             held_w +=
-                setup.control.as_ref().map_or(Some(0.0), |control| held_w_of(control, agent, &gains, &way, span_s))?;
+                setup.control.as_ref().map_or(Some(0.0), |control| held_w_of(control, agent, &gains, &own, span_s))?;
             agents += 1;
         }
         let sigma = if setup.control.is_some() { margin?.worst.sigma } else { 0.0 };
@@ -167,7 +165,13 @@ pub(super) fn steps_w_of(control: &Control, gains: &Gains) -> Option<f64> {
 
 /// D² of torques that are held and velocities that are filtered along these states of an agent, in the order of time, as the mean over a
 /// span, W; `None` where K cannot be inverted.
-pub(super) fn held_w_of(control: &Control, agent: &AgentSetup, gains: &Gains, way: &[Led], span_s: f64) -> Option<f64> {
+pub(super) fn held_w_of(
+    control: &Control,
+    agent: &AgentSetup,
+    gains: &Gains,
+    way: &[&Led],
+    span_s: f64,
+) -> Option<f64> {
     let (hold, period_s) = (Hold::of(control), 1.0 / control.sample_hz);
     let late = hold.delay_s / period_s;
     let since = period_s * period_s * (1.0 / 3.0 + late + late * late);

@@ -164,14 +164,19 @@ fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
     format!("beside what s = 0 leaves there {kind}{both}; ")
 }
 
-fn linearised(found: &LinearisedSampling) -> String {
-    let LinearisedSampling { agent, period_s, radius, leftmost, agents, of: all } = found;
-    let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
-    let of = match (*agents, *all) {
+/// Of how many agents one is the worst.
+fn worst_of(agents: usize, all: usize) -> String {
+    match (agents, all) {
         (1, 1) => String::new(),
         (agents, all) if agents == all => format!(", the worst of all {all} agents"),
         (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
-    };
+    }
+}
+
+fn linearised(found: &LinearisedSampling) -> String {
+    let LinearisedSampling { agent, period_s, radius, leftmost, agents, of: all } = found;
+    let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
+    let of = worst_of(*agents, *all);
     let meaning = match found.answer() {
         PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
         PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),
@@ -184,17 +189,14 @@ fn linearised(found: &LinearisedSampling) -> String {
 
 fn whole(found: &WholeLoop) -> String {
     let WholeLoop { agent, period_s, agents, of: all, .. } = found;
-    let of = match (*agents, *all) {
-        (1, 1) => String::new(),
-        (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
-    };
+    let of = worst_of(*agents, *all);
     let meaning = match (found.growth_per_s(), found.amplified()) {
         (Some(rate), _) => {
             let (rate, ideal) = (rounded(rate), "where velocities were measured and samples fast, it would not");
             format!("a mode grows at {rate}/s; {ideal}: sample faster, filter less, or let the roots be slower")
         }
         (None, Some(part)) => format!(
-            "what is heard is passed on up to {} times as large, so that in some networks with such weights a mode grows: sample \
+            "what is heard is passed on up to {} times as large, so that in some network with such weights a mode may grow: sample \
              faster, filter less, or let roots and weights be smaller",
             rounded(part)
         ),

@@ -18,7 +18,7 @@ use crate::status::Status;
 
 /// What the first line of a file says that is saved, between a number and names.
 const LEFT: &str = " % is left; hypotheses that do not hold: ";
-/// What its last line begins with, before the digest of all above: by it a file is known that nobody edited since.
+/// What its last line begins with, before the digest of all above: by it a file is known that was not edited since.
 const DIGEST: &str = "# as saved: ";
 
 /// Searches for delays and schedules under which a design, or a scenario, does worst.

@@ -82,6 +82,18 @@ fn prop_every_line_may_be_missing_or_doubled() {
     }
 }
 
+/// A run of 10¹⁹ s has a meaning, and more rows than any file: reading and verdicts take it, and the run alone refuses it.
+#[test]
+fn regress_what_no_run_could_record_is_refused_by_runs_alone() {
+    // Nothing in it jumps again and again.
+    let teleoperation = SHIPPED_SCENARIOS.iter().find(|scenario| scenario.name == "teleoperation").unwrap().text;
+    let with_end = |line| if str::starts_with(line, "end_s") { "end_s = 9223372036854775807" } else { line };
+    let long = teleoperation.lines().map(with_end).collect::<Vec<_>>().join("\n");
+    let scenario = read(&long).unwrap();
+    assert!(forwardstep_sim::check_recording(&scenario.setup).is_err());
+    survives(&long);
+}
+
 proptest! {
     #[test]
     fn prop_mutated_text_never_panics(
