@@ -25,6 +25,9 @@
 #     scenario states and nothing else, and a claim that rests on them reaches to the end of the run only.
 #     The edges of a random graph are given, too, and stay: they are held against the rule that draws them.
 #  5. That a weight or a delay which is an irrational constant runs as the double next to it, which is what is judged here.
+#  6. That antiderivatives, of immersion and invariance, have their regressors as slopes; that an equation of a chain in feedback form
+#     has states up to its own, or to the next, alone; and that lists which stand for vectors have as many entries as the robot needs.
+#     forwardstep refuses other scenarios; this file does not look.
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
@@ -46,8 +49,9 @@ MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS, MOST_E
 # A claim that is not shown: (words, where in the certificate).
 class Rejected(Exception): outcome = REJECTED
 
-def require(node, condition, words):
+def require(node, condition, words, value=None):
     if not condition: raise Rejected(words, node.place)
+    return value
 
 # Something that cannot be checked here.
 class Undecided(Exception): outcome = UNCHECKED
@@ -70,34 +74,30 @@ def decimal(text):
 
 # A value of the certificate with its place. What has the wrong type is rejected there.
 class Node(collections.namedtuple("Node", "value place")):
-    def typed(self, kind, words):
-        require(self, isinstance(self.value, kind) and not isinstance(self.value, bool), f"must be {words}")
-        return self.value
+    def typed(self, words, *kinds): return require(self, type(self.value) in kinds, f"must be {words}", self.value)
 
     def field(self, key):
-        require(self, key in self.typed(dict, "an object"), f"lacks `{key}`")
+        require(self, key in self.typed("an object", dict), f"lacks `{key}`")
         return Node(self.value[key], f"{self.place}.{key}")
 
-    def optional(self, key): return self.field(key) if key in self.typed(dict, "an object") else None
+    def optional(self, key): return self.field(key) if key in self.typed("an object", dict) else None
 
     # Refuses fields that nothing reads: what stands in a certificate counts.
     def only(self, *keys):
-        for key in self.typed(dict, "an object"): require(self, key in keys, f"has `{key}`, which means nothing here")
+        for key in self.typed("an object", dict): require(self, key in keys, f"has `{key}`, which means nothing here")
 
     # All its fields.
-    def fields(self, *keys):
-        self.only(*keys)
-        return map(self.field, keys)
+    def fields(self, *keys): return self.only(*keys) or map(self.field, keys)
 
-    def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed(list, "a list"))]
+    def each(self): return [Node(value, f"{self.place}[{k}]") for k, value in enumerate(self.typed("a list", list))]
 
-    def text(self): return self.typed(str, "a text")
+    def text(self): return self.typed("a text", str)
 
-    def count(self): return self.typed(int, "a whole number")
+    def count(self): return self.typed("a whole number", int)
 
     # A whole number, a decimal in quotes, or "p/q" in quotes.
     def number(self):
-        text = str(self.typed((int, str), "a whole number, or a number in quotes"))
+        text = str(self.typed("a whole number, or a number in quotes", int, str))
         legible = len(text) <= MOST_DIGITS and (RATIO.fullmatch(text) or DECIMAL.fullmatch(text)) and abs(Fraction(text)) < 10**300
         require(self, legible, "is no decimal and no p/q of moderate length and size")
         return Fraction(text)
@@ -125,8 +125,9 @@ def such(condition, words, value=None):
     if not condition: raise Meaningless(words)
     return value
 
-def decided(condition, words):
+def decided(condition, words, value=None):
     if not condition: raise Undecided(words)
+    return value
 
 # What enclosures show, refute, or leave open.
 def settled(node, shown, refuted, words):
@@ -150,7 +151,15 @@ def table(value, where, keys=None):
 
 def listed(value, where): return such(isinstance(value, list) and value, f"{where} must be a list that is not empty", value)
 
+# Whether they rise strictly.
+def rising(times): return all(early < late for early, late in zip(times, times[1:]))
+
 def pair(value): return such(isinstance(value, list) and len(value) == 2, "where a pair must be there is something else", value)
+
+# The numbers and texts of a table or a list, each with the key that it stands under.
+def leaves(value, key=""):
+    if not isinstance(value, (dict, list)): return [(key, value)]
+    return [leaf for k, each in (value.items() if isinstance(value, dict) else ((key, x) for x in value)) for leaf in leaves(each, k)]
 
 def name_of(value, where): return such(isinstance(value, str), f"{where} must be a text", value)
 
@@ -160,13 +169,12 @@ def choice(value, where):
     return (value, {}) if isinstance(value, str) else next(iter(value.items()))
 
 # Scenarios may have kinds and keys from outside.
-def known(kind, kinds, what): decided(kind in kinds, f"{what} of the kind `{kind}` are not known")
+def known(kind, kinds, what, value=None): return decided(kind in kinds, f"{what} of the kind `{kind}` are not known", value)
 
 # The same, of those that are known.
 def chosen(value, where, kinds, what):
-    kind, body = choice(value, where)
-    known(kind, kinds, what)
-    return kind, body
+    found = choice(value, where)
+    return known(found[0], kinds, what, found)
 
 # A number for a message.
 def said(number): return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
@@ -184,7 +192,7 @@ def rounded(x, upwards):
     scale = Fraction(2) ** (160 - x.numerator.bit_length() + x.denominator.bit_length())
     return (math.ceil if upwards else math.floor)(x * scale) / scale
 
-def span(low, high): return rounded(low, False), rounded(high, True)
+def span(*ends): return rounded(min(ends), False), rounded(max(ends), True)
 
 def total(x, y):
     decided(not (infinite(x) and infinite(y)) or x == y, "∞ − ∞")
@@ -201,13 +209,11 @@ def minus(a): return -a[1], -a[0]
 # What is a limit at ∞ cannot be multiplied with what may come to zero; ends of intervals can.
 def multiply(a, b):
     decided(not any(x in (END, (-INF, -INF)) and y[0] <= 0 <= y[1] for x, y in ((a, b), (b, a))), "0 · ∞")
-    ends = [product(x, y) for x in a for y in b]
-    return span(min(ends), max(ends))
+    return span(*(product(x, y) for x in a for y in b))
 
 def inverse(a):
     if a[0] <= 0 <= a[1]: raise (Undefined if a[0] == a[1] else Undecided)("a divisor may be zero")
-    ends = [Fraction(0) if infinite(x) else 1 / x for x in a]
-    return span(min(ends), max(ends))
+    return span(*(Fraction(0) if infinite(x) else 1 / x for x in a))
 
 def hull(a, b): return min(a[0], b[0]), max(a[1], b[1])
 
@@ -285,13 +291,11 @@ def atan_at(x):
 def power(a, exponent):
     if exponent == 0: return (Fraction(1),) * 2
     if exponent.denominator == 1:
-        n = abs(exponent.numerator)
-        decided(n <= 1000, "an exponent is too large")
+        n = decided(abs(exponent) <= 1000, "an exponent is too large", abs(exponent.numerator))
         # An even power is one of |a|; now all of them rise.
-        a = magnitude(a) if n % 2 == 0 else a
-        value = span(a[0] ** n, a[1] ** n)
+        value = span(*(end**n for end in (magnitude(a) if n % 2 == 0 else a)))
         return inverse(value) if exponent < 0 else value
-    decided(a[0] > 0 or (a[0] == 0 and exponent > 0), "a base may be negative, or zero, under a broken exponent")
+    if a[0] < 0 or a[0] == 0 > exponent: raise (Undefined if a[1] < 0 or a[1] == 0 > exponent else Undecided)("a base has no such power")
     if exponent == Fraction(1, 2): return function("sqrt", a)
     # What has no logarithm, or none that is finite.
     ends = [Fraction(0) if (x == 0) == (exponent > 0) else INF for x in a]
@@ -339,8 +343,7 @@ def curve(times, values):
 
 # What a polynomial keeps within from 0 to an end: its Bernstein coefficients.
 def held(p, end):
-    found = [sum(Fraction(math.comb(j, k), math.comb(len(p) - 1, k)) * p[k] * end**k for k in range(j + 1)) for j in range(len(p))]
-    return span(min(found), max(found))
+    return span(*(sum(Fraction(math.comb(j, k), math.comb(len(p) - 1, k)) * p[k] * end**k for k in range(j + 1)) for j in range(len(p))))
 
 # What a derivative of such a curve keeps within.
 def along_points(times, values, order, t):
@@ -404,8 +407,7 @@ def once(of):
         return KEPT[key][0]
     return kept_
 
-@once
-def has_variable(tree): return tree[0] in ("t", "state", "points") or any(map(has_variable, parts_of(tree)))
+has_variable = once(lambda tree: tree[0] in ("t", "state", "points") or any(map(has_variable, parts_of(tree))))
 
 COMBINED = {"+": add, "-": lambda a, b: add(a, minus(b)), "*": multiply, "/": lambda a, b: multiply(a, inverse(b)), "hull": hull,
             "min": lambda a, b: tuple(map(min, a, b)), "max": lambda a, b: tuple(map(max, a, b))}
@@ -537,8 +539,7 @@ def in_one_pass(tree, t):
 # The rational number that a formula without variables is: its enclosure, where that is one number.
 def constant(tree):
     low, high = enclose(tree, WHOLE) if not has_variable(tree) else WHOLE
-    decided(low == high, "a constant is not rational, or has too many digits")
-    return low
+    return decided(low == high, "a constant is not rational, or has too many digits", low)
 
 # The number that a formula is for all t ≥ 0, where one pass shows it.
 def constant_for_ever(tree):
@@ -553,8 +554,7 @@ def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 def times(a, b): return ZERO if ZERO in (a, b) and not partial(a) and not partial(b) else b if a == ONE else a if b == ONE else ("*", a, b)
 
 # Whether a formula may lack a value somewhere.
-@once
-def partial(tree): return tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt")) or any(map(partial, parts_of(tree)))
+partial = once(lambda tree: tree[0] in ("/", "^") or tree[:2] in (("f", "log"), ("f", "sqrt")) or any(map(partial, parts_of(tree))))
 
 ZERO, ONE = ("number", Fraction(0)), ("number", Fraction(1))
 
@@ -665,6 +665,39 @@ DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlin
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
 CONTROL = "sample_hz computation_delay_s velocity noise quantisation torque_limit torque_rate_limit_per_s safe_command message_timeout_s"
 
+# What a number in the table of a robot has to be, by its key wherever it stands.
+SIGNS = {**dict.fromkeys("mass_kg length_m surge_kg sway_kg yaw_kg_m2 width".split(), positive),
+         **dict.fromkeys("damping armature coulomb surge_n_s_m sway_n_s_m yaw_n_m_s gravity_m_s2".split(), not_negative)}
+
+# A number, a diagonal or the rows of a matrix as the rows.
+def matrix(value, n, where):
+    stated = value if isinstance(value, list) else [value] * n
+    rows = [row if isinstance(row, list) else [0] * k + [row] + [0] * (n - 1 - k) for k, row in enumerate(stated)]
+    return [[exact(x, where) for x in row] for row in such(len(rows) == n, f"{where} has another number of entries", rows)]
+
+# Whether there is such a robot. M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the pivots
+# of the inertia of a spacecraft or a rotorcraft are; the minors of a ship's are, in its body, where D + Dᵀ ⪰ 0; of a planar arm with
+# a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0 turn M into M + A ⪰ M.
+# Factors by which masses, lengths and inertias vary are positive, and change none of this. URDFs are judged where their M is used.
+def possible(robot, body, start):
+    of = collections.defaultdict(int, {"dimension": 1, "order": 1, **dict(leaves(body))})
+    if robot in (*MASS, "vehicle", "rotorcraft") and "mass_kg" not in body: return False
+    if robot == "ship":
+        minor = of["sway_kg"] * of["yaw_kg_m2"] - of["sway_yaw_kg_m"] ** 2
+        return of["surge_kg"] * minor > 0 and 4 * of["sway_n_s_m"] * of["yaw_n_m_s"] >= (of["sway_yaw_n_s"] + of["yaw_sway_n_s"]) ** 2
+    if robot == "planar_arm":
+        m, l_, c, i = planar(body)
+        a, b = (i[k] + m[k] * c[k] ** 2 for k in (0, 1))
+        return b > 0 and min(i) >= 0 and a * b + m[1] * l_[0] ** 2 * i[1] > 0
+    if robot in ("spacecraft", "rotorcraft"):
+        # Wheels turn what has some about every axis if their own axes span all directions.
+        wheels = [[exact(x, "axis") for x in wheel.get("axis", [])] for wheel in body.get("wheels", [])] or matrix(1, 3, "axis")
+        turns = {len(u) for u in wheels} == {3} and is_definite([[sum(u[i] * u[k] for u in wheels) for k in range(3)] for i in range(3)])
+        momenta = start.get("spacecraft", {}).get("wheel_momentum_n_m_s", wheels)
+        spun = turns and all(map(any, wheels)) and len(momenta) == len(wheels)
+        return spun and is_definite(matrix(body.get("inertia_kg_m2"), 3, "inertia_kg_m2"))
+    return of["dimension"] in range(1, 101) and of["order"] in range(1, 256)
+
 # An agent: its name, robot, law, roots, λ, target, and the entry of the file that it comes from, with its place.
 class Agent:
     def __init__(self, name, index, entry, place):
@@ -674,8 +707,7 @@ class Agent:
         self.enforced, self.pushes = entry.get("enforce_limits", False) is not False, []
 
     # The table of its law that has gains: of vehicles that of the design.
-    def settings(self):
-        return table(choice(self.gains.get("design", "differentiable"), "design")[1], "design") if self.law == "thrust" else self.gains
+    def settings(self): return choice(self.gains.get("design", "differentiable"), "design")[1] if self.law == "thrust" else self.gains
 
 # κ of a real root −κ as (κ, 0), and (a, b), (a, −b) of a pair −a ± b i; real ones first, so that κ₀ is the first where there is one.
 # Those of p² + β p + α may be irrational: real ones are rounded towards the axis, pairs away from the real one.
@@ -699,7 +731,8 @@ Edge = collections.namedtuple("Edge", "source to weight delay")
 def polynomial(file):
     if isinstance(file, list): return [exact(c, "polynomial") for c in file] + [Fraction(1)]
     factors = [[a * a + b * b, 2 * a, 1] if b else [a, 1] for a, b in roots_of(file) if b >= 0]
-    return functools.reduce(convolved, [[0, 1]] * int(exact(file.get("integrators", 0), "integrators")) + factors, [Fraction(1)])
+    zeros = such(exact(zeros := file.get("integrators", 0), "integrators") in range(256), "there are too many integrators", zeros)
+    return functools.reduce(convolved, [[0, 1]] * int(zeros) + factors, [Fraction(1)])
 
 # The first column of the array of Routh up to the first entry that is not positive: there is none if and only if all roots of the
 # polynomial lie to the left of the axis.
@@ -747,6 +780,7 @@ class Scenario:
         such(len(self.index) == len(self.names), "two agents have the same name")
         for agent in self.agents:
             agent.roots, agent.manipulability, agent.tracks, agent.target = self.design(agent.place, agent.index == self.leader)
+            such(self.suits(agent), f"the law of {agent.name} does not go with these reference dynamics, or with so few roots")
         self.control = table(file["control"], "control", CONTROL) if "control" in file else None
         self.read_network()
         if self.body.get("follows_target") and not self.used(): self.reference = "tracking"
@@ -758,12 +792,22 @@ class Scenario:
         such(number.denominator == 1 and 1 <= number <= MOST_AGENTS, f"{place}.count must be a whole number of agents")
         names = [f"{name}-{k}" for k in range(1, int(number) + 1)] if "count" in entry else [name]
         such(len(self.agents) + len(names) <= MOST_AGENTS, "there are too many agents")
+        such(0 <= exact(entry.get("parameter_variation", {}).get("relative", 0), "relative") <= Fraction(9, 10), "robots vary by too much")
+        starts = [x for x in entry.get("start", {}).values() if isinstance(x, list) and x and isinstance(x[0], list)]
+        such(all(len(x) == len(names) for x in starts), f"{place} has another number of starts than of agents")
         for each in names:
             agent = Agent(each, len(self.agents), entry, place)
             agent.law, law = chosen(entry.get("law", self.file.get("law", USUAL_LAW[agent.robot])), "law", MADE_FOR, "laws")
             agent.gains = table(law, f"law.{agent.law}", GAINS[agent.law] + OTHER_SETTINGS)
             such(agent.robot in MADE_FOR[agent.law], f"the law `{agent.law}` is not made for `{agent.robot}`")
             self.agents.append(agent)
+        for key, x in leaves(agent.body):
+            # Gravity of a URDF has a direction.
+            if key in SIGNS and (agent.robot, key) != ("urdf", "gravity_m_s2"): SIGNS[key](x, f"{place}: {key}")
+        most = {"planar_arm": 5, "point_mass": 1, "ship": 9}.get(agent.robot, len(agent.body.get("parameters", [])))
+        given = [key for key, _ in leaves(law.get("estimate_start", 0))].count("given")
+        such(given in (0, most) or agent.robot == "urdf" or {"damping", "friction"} & {*agent.body}, f"{place}: not all estimates")
+        such(possible(agent.robot, agent.body, entry.get("start", {})), f"{place}: no robot has such an inertia, or such wheels")
 
     # The leader is an agent, or one vertex more.
     def lead(self, leader):
@@ -784,6 +828,15 @@ class Scenario:
         target = self.trajectory(entry["target"], f"{place}.target") if "target" in entry else None
         return roots_of(own), not_negative(own.get("manipulability_gain", 0), "manipulability_gain"), tracks, target
 
+    # Whether the law of an agent is made for its reference dynamics, and these are of the order that it needs, or its plant has.
+    def suits(self, agent):
+        kind, order = "tracking" if agent.tracks else self.reference, len(agent.body.get("regressors", "")) or agent.body.get("order", 2)
+        order = {"position_only": 3, "thrust": 4 if design_of(agent) in ("differentiable", "adaptive") else 3}.get(agent.law, order)
+        made = "tracking" if agent.law in (*ROOTLESS, BLIND[1]) else "consensus" if agent.law == "thrust" else "consensus tracking desired"
+        fit = kind in made and (kind != "consensus" or self.exchange() == "position") or agent.law in ("adaptive", "known")
+        n = len(self.polynomial) - 1 if self.polynomial else len(agent.roots) + (kind == "consensus")
+        return fit and (n >= order or agent.law in ("adaptive", "known", *ROOTLESS) and not self.polynomial and kind != "pure_integral")
+
     def exchange(self):
         told = {"leader": "position_velocity", "backstepping": "position"}.get(self.reference, self.body.get("exchange"))
         return such(told in ("position", "position_velocity"), "`exchange` has another value", told)
@@ -794,16 +847,13 @@ class Scenario:
         kind, body = choice(file, where)
         if kind == "formulas": return [motion_of(entry, where) for entry in listed(body, where)]
         if kind == "sinusoids": return [self.waves(table(entry, where), where) for entry in listed(body, where)]
-        if kind == "points":
-            times = [exact(t, f"{where}.times_s") for t in listed(table(body, where).get("times_s"), where)]
-            rows = [[exact(x, f"{where}.positions") for x in listed(row, where)] for row in listed(body.get("positions"), where)]
-        elif kind == "csv":
-            table_ = self.csv(table(body, where).get("file"))
-            times = [decimal(row["t_s"]) for row in table_]
-            rows = [[decimal(cell) for key, cell in row.items() if key != "t_s"] for row in table_]
         known(kind, ("points", "csv"), "motions")
-        such(len(rows) == len(times) and len({len(row) for row in rows}) == 1, f"{where} must have as many entries for every time")
-        such(all(early < late for early, late in zip(times, times[1:])), f"{where}: times must rise")
+        if kind == "csv":
+            cells = [{key: decimal(cell) for key, cell in row.items()} for row in self.csv(table(body, where).get("file"))]
+            body = {"times_s": [row.pop("t_s") for row in cells], "positions": [[*row.values()] for row in cells]}
+        times = [exact(t, f"{where}.times_s") for t in listed(table(body, where).get("times_s"), where)]
+        rows = [[exact(x, f"{where}.positions") for x in listed(row, where)] for row in listed(body.get("positions"), where)]
+        such(rising(times) and [*map(len, rows)] == [len(rows[0])] * len(times), f"{where}: times must rise, each with as many entries")
         return [("points", tuple(times), tuple(row[axis] for row in rows), 0) for axis in range(len(rows[0]))]
 
     # offset + Σ amplitude · sin(rate · t + phase), as a formula.
@@ -818,7 +868,6 @@ class Scenario:
 
     # The text of a file that the scenario names: beside it, in `inputs` beside it, or among the shipped robots.
     def text_of(self, name):
-        name = name_of(name, "file")
         places = [folder / name for folder in (self.folder, self.folder / "inputs", SHIPPED_ROBOTS) if (folder / name).is_file()]
         decided(places, f"the file `{name}` is not found beside the scenario")
         self.inputs[name], text = read(places[0])
@@ -856,7 +905,7 @@ class Scenario:
     # (entry, from when, until when) of the rows of a log; the last of them is the end.
     def log(self, rows, key):
         times, entries = [decimal(row["t_s"]) for row in rows], [row.get(key) for row in rows]
-        such(len(rows) > 1 and times[0] == 0 and all(a < b for a, b in zip(times, times[1:])), "a log must begin at 0 and rise")
+        such(len(rows) > 1 and times[0] == 0 and rising(times), "a log must begin at 0 and rise")
         such(all(entries[:-1]) and not entries[-1] and times[-1] >= self.end_s, "a log must end with an empty line, and not before the run")
         return [(decimal(entry), start, end) for entry, start, end in zip(entries, times, times[1:])]
 
@@ -958,8 +1007,7 @@ class Scenario:
     def recurring(self): return [len(self.graphs) - 1] if self.switching == "once" else list(range(len(self.graphs)))
 
     # The same where what comes after the run is known.
-    def for_ever(self):
-        return decided(self.switching != "log", "what comes after a log is not known") or self.recurring()
+    def for_ever(self): return decided(self.switching != "log", "what comes after a log is not known", self.recurring())
 
     # What (110) works over: whether graphs take turns, or links delay.
     def over(self):
@@ -1079,8 +1127,6 @@ def inexact(control):
     parts = [(table(control.get(k, {}), k), entry) for k in ("noise", "quantisation") for entry in ("position", "velocity", "tip_velocity")]
     return choice(control.get("velocity", "measured"), "velocity")[0] != "measured" or any(exact(x.get(k, 0), k) > 0 for x, k in parts)
 
-# What may be spoken about robot by robot.
-SEVERAL = ("uniform-inertia", "hurwitz", "desired-dynamics")
 # Hypotheses that only a run can show, or that the paper does not cover whenever they are asked for: no claim is right.
 NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", "angular-velocity", "every-wrench",
          "bounded-regressors", "regular-jacobian", "continuous-time", "exact-measurements")
@@ -1144,8 +1190,7 @@ def tiled(claim, windows, sequence):
         # No edge leads to a leader, so that a root from which everybody is reached is the leader where there is one.
         reach(claim.scenario, arborescence, root, {*phases})
         ends.append(at + len(phases))
-    require(windows, len(ends) > 1, "must be some")
-    return ends
+    return require(windows, len(ends) > 1, "must be some", ends)
 
 # Windows tile whole periods: any stretch of time twice as long as the longest of them holds a whole one. Where each phase has a tree of
 # its own, the order does not matter.
@@ -1168,8 +1213,7 @@ def drawn(scenario, given):
         found.append((phase.count(), start, start := until_s.number()))
         require(entry, 1 <= found[-1][0] <= len(scenario.graphs), "is no phase")
         require(entry, low * (1 - room) <= start - found[-1][1] <= high * (1 + room), "lasts shorter or longer than the scenario allows")
-    require(given, start >= scenario.end_s, "ends before the run")
-    return found
+    return require(given, start >= scenario.end_s, "ends before the run", found)
 
 # Such a sequence, or that of a log, tiled by windows up to the end of the run but for a rest that is no longer than is stated.
 @rule("spanning-tree leader-reaches-all", "drawn logged")
@@ -1220,8 +1264,7 @@ MOVING = ("revolute", "continuous", "prismatic")
 def of_urdf(reader):
     def guarded(scenario, agent):
         try:
-            locked = table(agent.body.get("locked", {}), "locked")
-            return reader(agent, ElementTree.fromstring(scenario.text_of(agent.body.get("file"))), locked)
+            return reader(agent, ElementTree.fromstring(scenario.text_of(agent.body["file"])), table(agent.body.get("locked", {}), "lock"))
         except (ElementTree.ParseError, AttributeError, TypeError, LookupError, RecursionError, ValueError):
             raise Undecided("a URDF cannot be read here") from None
     return guarded
@@ -1333,8 +1376,7 @@ def standing(scenario, agent):
     return [(joint, angles.pop() if joint.moves else joint.locked) for joint in joints]
 
 # Columns of the rotation matrix of a tip at the start.
-def rotation(scenario, agent):
-    return functools.reduce(lambda columns, stood: [carried(at, *stood) for at in columns], standing(scenario, agent), BASIS)
+def rotation(scenario, agent): return functools.reduce(lambda at, stood: [carried(x, *stood) for x in at], standing(scenario, agent), BASIS)
 
 # The lengths that may be uncertain: of a planar arm, of a tool, or of all that moves.
 def lengths(scenario, agent):
@@ -1362,12 +1404,10 @@ def jacobian(scenario, agent):
 
 # The kinds of friction at the joints of robots where there is some.
 def frictions(scenario):
-    found = set()
-    for agent in (agent for agent in scenario.agents if "friction" in agent.body):
-        kind, body = chosen(agent.body["friction"], "friction", ("ignore", "dry", "smooth"), "frictions")
-        force = body["coulomb"] if "coulomb" in body else [stated for *_, stated, _ in links(scenario, agent)]
-        found |= {kind for x in (force if isinstance(force, list) else [force]) if exact(x, "coulomb") and kind != "ignore"}
-    return found
+    kinds = ("ignore", "dry", "smooth")
+    stated = [(a, *chosen(a.body["friction"], "friction", kinds, "frictions")) for a in scenario.agents if "friction" in a.body]
+    forces = lambda a, body: body["coulomb"] if "coulomb" in body else [force for *_, force, _ in links(scenario, a)]
+    return {kind for a, kind, body in stated for _, force in leaves(forces(a, body)) if exact(force, "coulomb") and kind != "ignore"}
 
 # M is positive definite at every q if no body has a negative mass or inertia, and every joint moves some: T = 0 leaves them at rest, and
 # from the base on no joint can move without moving what has mass, if it slides, or turning what has a central inertia I ≻ 0, or one
@@ -1425,33 +1465,15 @@ def certain(scenario, agent):
     kinds = [joint.kind for joint in path(scenario, agent) if joint.moves]
     return agent.gains["end_effector"].get("uncertain", "tool") == "tool" or {*kinds[1:]} <= {"prismatic"}
 
-# M is positive definite at all q, by a bound that does not depend on q: a mass is positive; the minors of a ship's are, in its
-# body; of a planar arm with a = I₁ + m₁c₁² and b = I₂ + m₂c₂² det M = (a + m₂l₁²) b − (m₂l₁c₂ cos q₂)² ≥ ab + m₂l₁²I₂. Rotors A ⪰ 0
-# turn M into M + A ⪰ M.
-def definite_inertia(scenario, agent):
-    rotors = agent.body.get("armature", 0)
-    such(min(exact(x, "armature") for x in (rotors if isinstance(rotors, list) else [rotors])) >= 0, "an armature is negative")
-    if agent.robot in ("urdf", "point_mass"):
-        return solid(scenario, agent) if agent.robot == "urdf" else exact(agent.body.get("mass_kg"), "mass_kg") > 0
-    if agent.robot == "ship":
-        of = table(agent.body.get("inertia"), "inertia")
-        m_11, m_22, m_23, m_33 = (exact(of.get(key, 0), key) for key in ("surge_kg", "sway_kg", "sway_yaw_kg_m", "yaw_kg_m2"))
-        return min(m_11, m_22) > 0 and m_22 * m_33 > m_23 ** 2
-    m, l_, c, i = planar(agent.body)
-    a, b = (i[k] + m[k] * c[k] ** 2 for k in (0, 1))
-    return min(m + l_ + [b]) > 0 and min(i) >= 0 and a * b + m[1] * l_[0] ** 2 * i[1] > 0
-
 # Backstepping takes one fewer of a strict-feedback chain than it has equations, and as many of a pure-feedback chain.
 def derivatives(a): return max(1, len(a.body.get("regressors", "")) - (a.robot == "strict_feedback")) if "_feedback" in a.robot else 1
 
-def terms(body):
-    held = body.values() if isinstance(body, dict) else body if isinstance(body, list) else []
-    return [formula(body, STATES)] if isinstance(body, str) else [term for each in held for term in terms(each)]
+def terms(body): return [formula(text, STATES) for _, text in leaves(body) if isinstance(text, str)]
 
 # A value of the sign is solved for so often that the error that stays, about h sup|ξ̇₀|/α, is small: h κ₀, or h √(κ₀κ₁), ≤ 0.01.
 # For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α.
 def set_valued(scenario):
-    h = exact(scenario.body.get("sign_period_s", Fraction(1, 1000)), "sign_period_s")
+    h = positive(scenario.body.get("sign_period_s", Fraction(1, 1000)), "sign_period_s")
     h = h if scenario.control is None else 1 / positive(scenario.control.get("sample_hz"), "sample_hz")
     (alpha, _), (a, b) = coefficients(scenario), roots_of(scenario.body)[0]
     mean = alpha * (a if scenario.body.get("design") in FIRST_ORDER else 1 + abs(b) / a)
@@ -1468,9 +1490,8 @@ def coefficients(scenario):
 
 # The chain that is named.
 def find(claim, agent):
-    of = [one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS]
-    require(agent, of, "is no chain")
-    return of[0]
+    named = (one for one in claim.scenario.agents if one.name == agent.text() and one.law in CHAIN_LAWS)
+    return next(named, None) or require(agent, False, "is no chain")
 
 # In this state, x1, x2, … or x, dx, d2x, … or x1, x2, dx1, dx2, …, a term of the agent has no value.
 @rule("defined-terms", "no-value")
@@ -1493,19 +1514,18 @@ STATES = [f"x{k}" for k in range(1, 256)] + [f"{d}x" for d in RATES] + [f"{d}x{k
 
 # With equal moments of inertia ΔωᵀM S(Δω) ω_d vanishes for whatever target.
 def rests(agent):
-    rows = listed(agent.body["inertia_kg_m2"], "inertia_kg_m2")
-    entries = [exact(x, "inertia_kg_m2") for row in rows for x in (row if isinstance(row, list) else [row])]
-    return still(agent) or entries in ([entries[0]] * 3, [entries[0] if k % 4 == 0 else 0 for k in range(9)])
+    rows = matrix(agent.body["inertia_kg_m2"], 3, "inertia_kg_m2")
+    return still(agent) or rows == matrix(rows[0][0], 3, "inertia_kg_m2")
 
 def all_constant(scenario):
-    edges = [edge for phase in scenario.recurring() for edge in scenario.graphs[phase]]
+    # The last graph recurs, whatever the order.
     same = lambda kind, body: kind == "constant_s" or kind == "piecewise_constant" and len({*body["values_s"]}) == 1
-    return scenario.fixed(scenario.recurring()) and all(not isinstance(edge.weight, str) and same(*edge.delay[:2]) for edge in edges)
+    return scenario.fixed(scenario.recurring()) and all(not isinstance(e.weight, str) and same(*e.delay[:2]) for e in scenario.graphs[-1])
 
 # What follows from the text alone, by (id, kind): from the scenario, and the agents that the claim names.
 TEXT = {(each, "text"): so for each, so in {
     "unbiased-acceleration": lambda s, _: not any(any(agent.settings().get("bias_m_s2", [])) for agent in s.agents),
-    "uniform-inertia": lambda s, _: all([definite_inertia(s, a) for a in robots(s)]), "constant-weights": lambda s, _: not s.varying(),
+    "uniform-inertia": lambda s, _: all([a.robot != "urdf" or solid(s, a) for a in robots(s)]),
     "bounded-dynamics": lambda s, _: robots(s) and all(unturned(s, agent) for agent in robots(s)),
     "defined-terms": lambda s, _: all(everywhere(term, derivatives(a)) for a in s.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
     # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
@@ -1521,7 +1541,7 @@ TEXT = {(each, "text"): so for each, so in {
     ("parameters-within-bounds", "outside"): lambda s, _: not parameters_hold(s), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
     # Of (3) and (23) delays may jump with the phases.
     ("fixed-graph", "one-graph"): lambda s, _: s.fixed(delays=False) and not s.varying() if s.reference == "pure_integral" else s.fixed(),
-    ("common-first-root", "constant"): lambda s, _: all_constant(s),
+    ("common-first-root", "constant"): lambda s, _: all_constant(s), ("constant-weights", "text"): lambda s, _: not s.varying(),
     ("input-factor", "factor-away"): lambda s, _: all(max(low, -high) >= floor for _, (low, high), floor in factors(s)),
     ("start-attitude", "half-turn"): lambda s, own: scalar_part(s, own)[1] <= 0,
     # Every entry comes to zero as t grows, and the norm with it.
@@ -1558,8 +1578,7 @@ def enclosed(claim, node, tree, limits, words):
             low, high = attempt(enclose, tree, (t, t)) or WHOLE
             require(within, low <= ends[1] and ends[0] <= high, f"does not hold [{said(low)}, {said(high)}], seen at t = {said(t)} s")
         if not limits(*found): doubt = f"[{said(found[0])}, {said(found[1])}], found from t = {said(piece[0])} s on, decides nothing"
-    decided(not doubt, doubt)
-    return piece
+    return decided(not doubt, doubt, piece)
 
 # The same from the middle on, by the slope: the error is one of the square of the length of a piece.
 def straight(tree, piece):
@@ -1594,7 +1613,12 @@ def rule_bound(delay):
     if kind == "constant_s": return not_negative(body, kind)
     if kind in ("formula_s", "log", "hold_log"): return None
     if kind in ("piecewise_constant", "random_hold"):
-        return max(not_negative(x, kind) for x in listed(table(body, kind).get("value_s" if kind == "random_hold" else "values_s"), kind))
+        keys = ("hold_s", "value_s") if kind == "random_hold" else ("times_s", "values_s")
+        times, values = ([not_negative(x, key) for x in listed(table(body, kind).get(key), key)] for key in keys)
+        rises = rising([*times, exact(body.get("period_s", times[-1] + 1), "period_s")]) and times[0] == 0
+        rises = 0 < times[0] <= times[-1] if kind == "random_hold" else rises
+        such(rises and len(times) == len(values), f"`{keys[0]}` must rise, and have as many entries as `{keys[1]}`")
+        return max(values)
     mean, swing, low, high, latency, jitter = (not_negative(table(body, kind).get(key, 0), key) for key in (
         "mean_s", "amplitude_s", "min_s", "max_s", "latency_s", "jitter_s"))
     period_s = positive(body.get("period_s"), "period_s")
@@ -1646,8 +1670,7 @@ def delays(claim, bound_s, enclosures, given):
             # An age as large as the run is bounded by that alone.
             require(ages[link], least_age(body, scenario.end_s) <= worst <= scenario.end_s / 2, "is out of range")
         largest = max(largest, worst)
-    require(bound_s, largest <= most, f"is exceeded: a delay may reach {said(largest)} s")
-    return always
+    return require(bound_s, largest <= most, f"is exceeded: a delay may reach {said(largest)} s", always)
 
 # Heard at samples, a message is up to a period older than its delay.
 @rule("messages-in-time", "ages")
@@ -1709,8 +1732,7 @@ NUMBERS = {
     "pushes-end": (ended, "comes before the end of a push")}
 
 @rule(" ".join(NUMBERS), "number")
-def number(claim, value):
-    require(value, NUMBERS[claim.id][0](claim.scenario, value.number()), NUMBERS[claim.id][1])
+def number(claim, value): require(value, NUMBERS[claim.id][0](claim.scenario, value.number()), NUMBERS[claim.id][1])
 
 @rule("desired-dynamics", "routh no-routh")
 def hurwitz(claim, column):
@@ -1722,14 +1744,11 @@ def hurwitz(claim, column):
 # κ₀ is the same within each class, and all edges that recur lead within a class or to a later one: cycles stay within classes.
 @rule("common-first-root", "classes")
 def common_first_root(claim, classes):
-    scenario, place = claim.scenario, {}
-    for k, group in enumerate(classes.each()):
-        for name in group.each():
-            require(name, name.text() in scenario.index and name.text() not in place, "is no agent, or stands twice")
-            place[name.text()] = k
-        first = {tuple(scenario.agents[scenario.index[name.text()]].roots[:1]) for name in group.each()}
-        require(group, len(first) == 1, "has agents whose κ₀ differ")
-    require(classes, len(place) == len(scenario.names), "must hold every agent")
+    scenario, groups = claim.scenario, [[name.text() for name in group.each()] for group in classes.each()]
+    require(classes, sorted(sum(groups, [])) == sorted(scenario.names), "must hold every agent, and each once")
+    place = {name: k for k, group in enumerate(groups) for name in group}
+    for node, group in zip(classes.each(), groups):
+        require(node, len({tuple(scenario.agents[scenario.index[name]].roots[:1]) for name in group}) == 1, "has agents whose κ₀ differ")
     at, edges = [place[name] for name in scenario.names], [edge for phase in scenario.recurring() for edge in scenario.pairs[phase]]
     require(classes, all(at[source] <= at[to] for source, to in edges), "are not in order: an edge leads back")
 
@@ -1740,12 +1759,13 @@ def pivots(rows):
     return [pivot, *pivots([[x - row[0] / (pivot or 1) * y for x, y in zip(row[1:], right)] for row in below_])]
 
 # A symmetric matrix is positive definite if and only if all pivots are positive.
+def is_definite(rows): return rows == [list(column) for column in zip(*rows)] and len(pivots(rows)) == len(rows) and min(pivots(rows)) > 0
+
 def definite(node, rows, stated):
     such(len(rows) <= MOST_ROWS and all(len(row) == len(rows) for row in rows), "a gain is not a square matrix of moderate size")
     require(node, rows == [list(column) for column in zip(*rows)], "is not of a symmetric matrix")
-    found = pivots(rows)
-    require(stated, [pivot.number() for pivot in stated.each()] == found, "are not the pivots of the matrix")
-    require(stated, len(found) == len(rows) and min(found) > 0, "are not all positive")
+    require(stated, [pivot.number() for pivot in stated.each()] == pivots(rows), "are not the pivots of the matrix")
+    require(stated, is_definite(rows), "are not all positive")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
     f"{law.replace('_', '-')}-gains": (law,) for law in (*BLIND, *ROOTLESS, "thrust")}
@@ -1797,8 +1817,7 @@ def bounded(claim, order, stretch):
     require(order, order.count() >= max(most for _, _, most in motions), "is too low for a law")
     decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
     # Agents of one entry share a target.
-    own = {(id(tree), lowest, most): (tree, lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"}
-    for tree, lowest, most in own.values():
+    for tree, lowest, most in {(unique(tree), lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"}:
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
                 always, shown = lasts(stretch), finite(tree, pieces(stretch, tree, claim.scenario.end_s))
@@ -1858,8 +1877,7 @@ def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for 
 
 def quaternion(own):
     paths = [tree for agent in own for tree in agent.target or []]
-    decided(len(paths) in (4, 7), "is of no quaternion")
-    return paths[-4:]
+    return decided(len(paths) in (4, 7), "is of no quaternion", paths[-4:])
 
 # The square of how far a target is from where the reach of a tip is counted.
 def reached(claim, _=FOR_EVER):
@@ -1945,9 +1963,8 @@ def entry_away(claim, entry, bound):
 # k λ > β + κ⁴/(2 (β² − α) (β − κ)), κ the smaller root: L − (…/k) 1 of the followers is positive definite.
 @rule("swarm-coupling", "definite")
 def swarm(claim, pivots):
-    scenario = claim.scenario
+    scenario, ((small, turn), (large, _)) = claim.scenario, sorted(roots_of(claim.scenario.body))
     require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
-    (small, turn), (large, _) = sorted(roots_of(scenario.body))
     require(claim.proof, small > 0 and turn == 0 and "alpha" not in scenario.body, "is for real roots that are stated")
     least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
     followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
@@ -2040,7 +2057,8 @@ def check(certificate_text, scenario_text, folder, digests=True):
 def outcome(scenario, entry, asked, spoken):
     claim = Claim(scenario, entry)
     for key in [(claim.id, name) for name in claim.agents or [""]]:
-        require(entry, claim.id in SEVERAL or key not in spoken, "speaks twice about the same")
+        # These may be spoken about robot by robot.
+        require(entry, claim.id in ("uniform-inertia", "hurwitz", "desired-dynamics") or key not in spoken, "speaks twice about the same")
         # What is known of the reach of a URDF depends on where its tip is; and a formula may be seen to be a constant here alone.
         require(entry, key in asked or claim.id in ("target-within-reach", "bounded-weights"), "is not asked for by this scenario")
         spoken.add(key)

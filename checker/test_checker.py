@@ -1246,13 +1246,13 @@ class FalseProofs(unittest.TestCase):
         arm = "robot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }"
         limp = arm[:-2] + ", com_m = [0.5, 0.0], inertia_kg_m2 = [0.2, %s] }"
         self.accepted("theorem-2", "uniform-inertia", lambda entry: None, (arm, limp % "1e-9"))
-        self.rejected("theorem-2", "uniform-inertia", "is not so", lambda entry: None, (arm, limp % "0"))
+        self.rejected("theorem-2", "uniform-inertia", "no robot has", lambda entry: None, (arm, limp % "0"))
         ship = "sway_kg = 33.8, sway_yaw_kg_m = 1.1, yaw_kg_m2 = 2.8"
         self.assertIn(ship, place_of("five-ships").read_text())
         even = "sway_kg = 4, sway_yaw_kg_m = %s, yaw_kg_m2 = 9"
         self.accepted("five-ships", "uniform-inertia", lambda entry: None, (ship, even % "-5.999"))
-        self.rejected("five-ships", "uniform-inertia", "is not so", lambda entry: None, (ship, even % "-6"))
-        self.rejected("bounds", "uniform-inertia", "is not so", lambda entry: None, ("mass_kg = 2,", "mass_kg = 0,"))
+        self.rejected("five-ships", "uniform-inertia", "no robot has", lambda entry: None, (ship, even % "-6"))
+        self.rejected("bounds", "uniform-inertia", "mass_kg must be positive", lambda entry: None, ("mass_kg = 2,", "mass_kg = 0,"))
         self.accepted("five-ships", "bounded-dynamics")
 
     def test_signs_are_solved_for_often_enough(self):
@@ -1784,6 +1784,75 @@ class FalseProofs(unittest.TestCase):
             found = checker.check(json.dumps(own), sampled_, SCENARIOS, digests=False)
             self.assertIn(("messages-in-time", outcome), [(one[0], one[3]) for one in found], found)
 
+    def test_there_is_such_a_robot_whatever_is_asked_of_it(self):
+        """Theorem 7 takes M = Mᵀ ≻ 0 for granted, (a8) a mass, and the others what no hypothesis of theirs names."""
+        none = lambda entry: None  # noqa: E731
+        rows = "inertia_kg_m2 = [[10, 0.5, -0.3], [0.5, 8, 0.2], [-0.3, 0.2, 6]]"
+        for other in ("[[10, 0.5, -0.3], [0.5, -8, 0.2], [-0.3, 0.2, 6]]", "[[10, 0.5, -0.3], [0.7, 8, 0.2], [-0.3, 0.2, 6]]", "[10, 8, 0]", "-1",
+                      "[[1, 2, 0], [2, 4, 0], [0, 0, 1]]", "[[1, 2, 0], [2, 3.99, 0], [0, 0, 1]]"):
+            self.rejected("theorem-7", "attitude-gains", "no robot has", none, (rows, f"inertia_kg_m2 = {other}"))
+        for other in ("[10, 8]", "[[10, 0.5], [0.5, 8]]"):
+            self.rejected("theorem-7", "attitude-gains", "another number of entries", none, (rows, f"inertia_kg_m2 = {other}"))
+        for other in ("[10, 8, 6]", "7", "[[1, 2, 0], [2, 4.01, 0], [0, 0, 1]]"):
+            self.accepted("theorem-7", "attitude-gains", none, (rows, f"inertia_kg_m2 = {other}"))
+        # A wheel without an axis, axes in a plane, and the momenta of other wheels.
+        wheel = "{ axis = [0, 0, 1], torque_limit_n_m = 8"
+        for axis in ("[0, 0, 0]", "[1, 1, 0]", "[0, 1]"):
+            self.rejected("attitude-from-a-table", "attitude-gains", "no robot has", none, (wheel, wheel.replace("[0, 0, 1]", axis)))
+        momenta = "wheel_momentum_n_m_s = "
+        self.rejected("theorem-7", "attitude-gains", "no robot has", none, (momenta, momenta + "[0, 0, 0]\n# "))
+        self.accepted("theorem-7", "attitude-gains", none, (momenta, momenta + "[0, 0, 0, 1]\n# "))
+        for name, each, old, other, words in (
+                ("without-velocity", "position-only-gains", "dimension = 3", "dimension = 0", "no robot has"),
+                ("without-velocity", "position-only-gains", "dimension = 3", "dimension = 1.5", "no robot has"),
+                ("without-velocity", "position-only-gains", "mass_kg = ", "mass_kg = -", "must be positive"),
+                ("formation", "thrust-gains", "inertia_kg_m2 = [0.012, 0.012, 0.022]", "inertia_kg_m2 = [0.012, 0, 0.022]", "no robot has"),
+                ("formation", "thrust-gains", "mass_kg = 1.2, ", "", "no robot has"),
+                ("theorem-4", "thrust-gains", "mass_kg = ", "mass_kg = -", "must be positive"),
+                ("theorem-2", "uniform-inertia", "length_m = [1.0, 0.8]", "length_m = [1.0, -0.8]", "must be positive"),
+                ("theorem-2", "uniform-inertia", "length_m = [1.0, 0.8]", "length_m = [1.0, 0.8], damping = [0, -5]", "must not be negative"),
+                ("theorem-2", "uniform-inertia", "length_m = [1.0, 0.8]", "length_m = [1.0, 0.8], gravity_m_s2 = -5", "must not be negative"),
+                ("five-ships", "uniform-inertia", "surge_n_s_m = 12.0", "surge_n_s_m = -12.0", "must not be negative"),
+                ("five-ships", "uniform-inertia", "sway_yaw_n_s = 0.4", "sway_yaw_n_s = 10", "no robot has"),
+                ("planar-arms-with-friction", "smooth-friction", "coulomb = [0.6, 0.3]", "coulomb = [0.6, -0.3]", "must not be negative"),
+                ("planar-arms-with-friction", "smooth-friction", "width = 0.05", "width = 0", "must be positive"),
+                ("saturated-coupling", "input-factor", "order = 2", "order = 0", "no robot has")):
+            self.rejected(name, each, words, none, (old, other))
+        spread = lambda by: ("relative = 0.1", f"relative = {by}")  # noqa: E731
+        for by in (100, 1, 0.91, -0.1): self.rejected("remark-12", "uniform-inertia", "vary by too much", none, spread(by))
+        for by in (0, 0.9): self.accepted("remark-12", "uniform-inertia", none, spread(by))
+
+    def test_starts_and_estimates_are_those_of_the_agents(self):
+        none = lambda entry: None  # noqa: E731
+        row = "[-0.6, -0.9], "
+        for other in ("", row + row): self.rejected("theorem-2", "uniform-inertia", "another number of starts", none, (row, other))
+        adaptive = ("[law.adaptive]", "[law.adaptive]\nestimate_start.given = [%s]")
+        self.accepted("theorem-2", "uniform-inertia", none, (adaptive[0], adaptive[1] % "1, 2, 3, 4, 5"))
+        self.rejected("theorem-2", "uniform-inertia", "not all estimates", none, (adaptive[0], adaptive[1] % "1, 2"))
+
+    def test_laws_go_with_the_references_that_they_are_made_for(self):
+        """Neither a law that follows targets agrees, nor does one that hears positions alone hear velocities; and few roots lead no chain."""
+        words, none = "does not go with these reference dynamics", lambda entry: None
+        position, velocity = 'exchange = "position"', 'exchange = "position_velocity"'
+        for name in ("saturated-coupling", "theorem-4"):
+            self.rejected(name, "applied-torque", words, none, (position, velocity))
+            self.rejected(name, "applied-torque", words, none, ("[reference.consensus]", "[reference.pure_integral]"))
+        self.rejected("saturated-coupling", "applied-torque", words, none, ("order = 2", "order = 9"))
+        for name, roots, few in (("theorem-1", "[1.0, 2.0]", "[1.0]"), ("without-velocity", "[1.0, 1.5, 2.0]", "[1.0, 1.5]"),
+                                 ("model-reference", "[1.0, 2.0]", "[1.0]")):
+            self.rejected(name, "applied-torque", words, none, (f"roots_per_s = {roots}", f"roots_per_s = {few}"))
+        self.rejected("desired-nonlinear-arms", "applied-torque", words, none, ("\npolynomial = [0, 2]", "\npolynomial = [0]"))
+
+    def test_delays_jump_at_times_that_rise(self):
+        none = lambda entry: None  # noqa: E731
+        jumps = "times_s = [0, 0.37, 0.9]"
+        for other in ("[0, 0.9, 0.37]", "[0.1, 0.37, 0.9]", "[0, 0.37, 0.37]", "[0, 0.37]", "[0, 0.37, 99]"):
+            self.rejected("theorem-2", "bounded-delays", "must rise", none, (jumps, f"times_s = {other}"))
+        self.accepted("theorem-2", "bounded-delays", none, (jumps, "times_s = [0, 0.38, 0.9]"))
+        for other in ("[0, 0.3]", "[0.3, 0.1]", "[0.1, 0.2, 0.3]"):
+            self.rejected("leader-over-late-links", "bounded-delays", "must rise", none, ("hold_s = [0.1, 0.3]", f"hold_s = {other}"))
+        self.accepted("leader-over-late-links", "bounded-delays", none, ("hold_s = [0.1, 0.3]", "hold_s = [0.3, 0.3]"))
+
     def test_everybody_that_agrees_needs_roots(self):
         rootless = ("reference.consensus = { roots_per_s = [1.5] }\n", "")
         self.rejected("framework", "real-roots", "has no roots", lambda entry: None, rootless)
@@ -2070,6 +2139,16 @@ class Enclosures(unittest.TestCase):
             self.assertRaises(checker.Undecided, checker.enclose, checker.formula(text), (checker.Fraction(16), checker.INF))
         late = checker.enclose(checker.formula("t/(1 + t)"), (checker.Fraction(16), checker.INF))
         self.assertEqual(late, (checker.Fraction(16, 17), 1))
+
+    def test_roots_of_what_is_negative_have_no_value(self):
+        """Of any broken exponent, and of zero where it is negative; where a base may be either, nothing is said."""
+        number = lambda x: (checker.Fraction(x),) * 2  # noqa: E731
+        for text, x in (("x^0.5", -1), ("x^1.5", "-1/4"), ("x^-0.5", 0), ("x^-0.5", -2), ("(x - 1)^(1/3)", 0), ("1 + (0 - x^2)^0.25", 3)):
+            self.assertRaises(checker.Undefined, checker.enclose, checker.formula(text, ["x"]), {"x": number(x)})
+        for text, t in (("x^0.5", (-1, 1)), ("x^-0.5", (0, 1)), ("x^0.5", (-1, 0)), ("x^-1.5", (-1, 1))):
+            with self.assertRaises(checker.Undecided) as raised: checker.enclose(checker.formula(text, ["x"]), {"x": tuple(map(checker.Fraction, t))})
+            self.assertIs(type(raised.exception), checker.Undecided, text)
+        self.assertEqual(checker.enclose(checker.formula("x^0.5", ["x"]), {"x": number(0)}), (0, 0))
 
     def test_zero_times_what_has_no_value_is_not_zero(self):
         for text in ("0*log(t - 5)", "0/(t - 5)", "0*(t - 5)^-1", "0*sqrt(t - 5)"):
