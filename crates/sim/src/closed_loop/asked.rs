@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{Derived, Heard, Measured, ReferenceOut, SlidingInputs, saturated};
+use forwardstep_core::reference::{Derived, Measured, ReferenceOut, SlidingInputs, saturated};
 
 use super::columns::Inputs;
-use super::references::{AnyReference, Transmits};
+use super::references::Leads;
 use super::robot_batch::Layout;
 
 /// Signs that are functions of the instant.
@@ -16,29 +16,31 @@ pub(super) struct Layer {
 }
 
 /// What the signs of everybody are taken of.
-pub(super) fn argument<X: Transmits>(
-    reference: &AnyReference<X>,
+pub(super) fn argument(
+    reference: &dyn Leads,
     l: Layout,
     x: &[f64],
     inputs: Inputs<'_>,
-    told: [&[f64]; 2],
+    derived: [&[f64]; 2],
     e: &mut [f64],
 ) -> Result<(), LengthError> {
     let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
-    let first = X::HELD.map_or(0, |held| l.reference + held * block);
+    let told = reference.told();
+    let first = told.held.map_or(0, |held| l.reference + held * block);
+    let channels = told.channels();
     // Of a channel that is not heard nothing is read.
     let channel = |columns: &'_ [f64], c: usize| -> Range<usize> {
-        if c < X::CHANNELS { c * block..(c + 1) * block } else { columns.len()..columns.len() }
+        if c < channels { c * block..(c + 1) * block } else { columns.len()..columns.len() }
     };
     let (held, heard) = (&x[first..], inputs.sums);
-    let own = [&held[channel(held, 0)], &held[channel(held, 1)], told[0]];
-    let sums = [&heard[channel(heard, 0)], &heard[channel(heard, 1)], told[1]];
+    let own = [&held[channel(held, 0)], &held[channel(held, 1)], derived[0]];
+    let sums = [&heard[channel(heard, 0)], &heard[channel(heard, 1)], derived[1]];
     sliding.argument(l.m, SlidingInputs { own, degree: inputs.degree, sums }, e)
 }
 
 /// A sign that is a function of the instant and taken of what is heard alone leans on ż or on the rate of y, before the torque.
-pub(super) fn add_sign_terms_now<X: Transmits>(
-    reference: &AnyReference<X>,
+pub(super) fn add_sign_terms_now(
+    reference: &dyn Leads,
     layer: &mut Option<Layer>,
     l: Layout,
     x: &[f64],
@@ -66,14 +68,13 @@ pub(super) fn add_sign_terms_now<X: Transmits>(
 }
 
 /// z, ż and the rate of the reference state of everybody.
-pub(super) fn evaluate<X: Transmits>(
-    reference: &AnyReference<X>,
+pub(super) fn evaluate(
+    reference: &dyn Leads,
     l: Layout,
     (t_s, x): (f64, &[f64]),
     inputs: Inputs<'_>,
     out: ReferenceOut<'_>,
 ) -> Result<(), LengthError> {
     let measured = Measured { q: &x[..l.dq], dq: &x[l.dq..l.reference] };
-    let heard = Heard::new(inputs.degree, inputs.sums, l.block())?.at(t_s);
-    reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], heard, out)
+    reference.evaluate(l.m, measured, &x[l.reference..l.theta_hat], (t_s, inputs), out)
 }

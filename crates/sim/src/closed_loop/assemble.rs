@@ -7,7 +7,6 @@ use std::ops::Range;
 use forwardstep_core::agent::Clipped;
 use forwardstep_core::controller::Trouble;
 use forwardstep_core::plant::total;
-use forwardstep_core::reference::{Composite, Estimates, Position, PositionVelocity};
 use forwardstep_core::sampled::Recipe;
 
 use super::assembly::Assembly;
@@ -20,14 +19,14 @@ use super::injected::Energy;
 use super::members::batches;
 use super::pushes::Pushes;
 use super::recipes::built;
-use super::references::Transmits;
+use super::references::Told;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
 use crate::engine::{Heard, Port, Refuted};
 use crate::leader::{Following, FollowingDesign};
 use crate::recording::{ClippedSamples, Drive, GainRates, SampleTaken, Signal};
-use crate::setup::{Control, Exchange, Setup};
+use crate::setup::{Control, Setup};
 
 /// All populations and where their blocks stand.
 pub(crate) struct ClosedLoop<'a> {
@@ -83,15 +82,7 @@ impl<'a> ClosedLoop<'a> {
     /// Checks a setup and builds its closed loop.
     pub(crate) fn new(setup: &'a Setup) -> Result<Self, SetupError> {
         validate(setup)?;
-        match setup.exchange {
-            Exchange::Position => Self::with_exchange::<Position>(setup),
-            Exchange::PositionVelocity => Self::with_exchange::<PositionVelocity>(setup),
-            Exchange::Estimates => Self::with_exchange::<Estimates>(setup),
-            Exchange::Composite => Self::with_exchange::<Composite>(setup),
-        }
-    }
-
-    fn with_exchange<X: Transmits>(setup: &'a Setup) -> Result<Self, SetupError> {
+        let told = Told::of(setup.exchange);
         let axes = setup.agents[0].robot.axes.len();
         let following = setup.following();
         let sliding = following.map(|following| following.sliding());
@@ -157,10 +148,10 @@ impl<'a> ClosedLoop<'a> {
                 columns: guide,
             });
         }
-        let mut heard = closed_loop.start_references(setup, X::CHANNELS * axes)?;
-        if X::HELD.is_some() {
+        let mut heard = closed_loop.start_references(setup, told.channels() * axes)?;
+        if told.held.is_some() {
             // What is told is a part of what has just been started.
-            heard = closed_loop.heard_at_start(setup, X::CHANNELS * axes);
+            heard = closed_loop.heard_at_start(setup, told.channels() * axes);
         }
         if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
             let places = closed_loop.places();

@@ -10,6 +10,7 @@ use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
 use super::columns::Columns;
 use super::error::SetupError;
 use super::members;
+use super::pair::{Joined, Pair};
 use super::robot_batch::Member;
 use super::solo::{Solo, Target};
 use super::valid::too_many;
@@ -255,17 +256,23 @@ impl<'a> Assembly<'a> {
     /// # Errors
     /// [`SetupError`] when the start, the target or the limits do not suit them.
     pub fn solo<C: Controller>(&self, plant: C::Plant, controller: C) -> Result<Block, SetupError> {
+        let target_len = controller.target_len(plant.axes());
+        self.alone(Box::new(Joined::new(plant, controller)), target_len)
+    }
+
+    /// The same, whatever they are; a target has so many entries.
+    fn alone(&self, mut pair: Box<dyn Pair>, target_len: usize) -> Result<Block, SetupError> {
         let (setup, own) = (self.setup, self.agent());
+        let [states, blocks] = pair.states();
         let (start, interface) = (&own.start, own.interface());
         let actuators = interface.as_ref().map_or(0, |interface| interface.actuator_start.len());
         self.length(
             self.of_agent(),
             "start",
-            total(&plant.states()).saturating_sub(actuators),
+            total(&states).saturating_sub(actuators),
             start.q.len() + start.dq.len() + start.rest.len(),
         )?;
-        self.takes_pushes(&plant)?;
-        let blocks = controller.states();
+        self.takes_pushes(&mut *pair)?;
         let vectors = blocks
             .iter()
             .filter(|(signal, _)| matches!(signal, Signal::Reference(_) | Signal::ReferenceIntegral(_)))
@@ -278,9 +285,8 @@ impl<'a> Assembly<'a> {
         let target = match &own.target {
             None => None,
             Some(trajectory) => {
-                let entries = controller.target_len(plant.axes());
-                self.length(self.of_agent(), "target", entries, trajectory.axes())?;
-                let (need, known) = (controller.target_derivatives(), trajectory.known_derivatives());
+                self.length(self.of_agent(), "target", target_len, trajectory.axes())?;
+                let (need, known) = (pair.target_derivatives(), trajectory.known_derivatives());
                 if need > known {
                     return Err(SetupError::TargetDerivatives { agent: own.name.clone(), need, known });
                 }
@@ -289,32 +295,24 @@ impl<'a> Assembly<'a> {
                 Some(Target { trajectory, is_offset })
             }
         };
-        let torques = plant.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
+        let torques = pair.inputs().iter().filter(|(signal, _)| *signal == Signal::Torque).map(|(_, n)| n).sum();
         let effort_limits = effort_limits(own, torques)?;
         // What a limit takes away is not what the balance balances.
         let balance = setup.solver.balance && !own.enforce_limits;
-        Ok(Block(Box::new(Solo::new(
-            self.agents[0],
-            plant,
-            controller,
-            target,
-            effort_limits,
-            setup.control.is_some(),
-            balance,
-        ))))
+        let sampled = setup.control.is_some();
+        Ok(Block(Box::new(Solo::new(self.agents[0], pair, target, effort_limits, sampled, balance))))
     }
 
     /// Checks that a plant that is pushed takes what its robot says can act on it.
-    fn takes_pushes<P: Plant>(&self, plant: &P) -> Result<(), SetupError> {
+    fn takes_pushes(&self, pair: &mut dyn Pair) -> Result<(), SetupError> {
         let AgentSetup { name, robot, pushes, .. } = self.agent();
         if pushes.is_empty() {
             return Ok(());
         }
         let zeros = |blocks: &[Signals]| vec![0.0; total(blocks)];
-        let (state, external) =
-            (zeros(&plant.states()), zeros(&robot.interface().attachments.blocks(robot.axes.len())));
-        plant
-            .rate(&mut plant.scratch(), &state, &zeros(&plant.inputs()), &external, &mut state.clone())
+        let ([states, _], external) = (pair.states(), robot.interface().attachments.blocks(robot.axes.len()));
+        let state = zeros(&states);
+        pair.rate(&state, [&zeros(&pair.inputs()), &zeros(&external)], &mut state.clone())
             .map_err(|error| SetupError::Length { agent: name.clone(), error })
     }
 }

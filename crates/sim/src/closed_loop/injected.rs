@@ -19,9 +19,9 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, Truth};
-use forwardstep_core::plant::Plant;
-use forwardstep_core::reference::{Exchange, Heard};
+use forwardstep_core::controller::{Asked, Balance};
+
+use super::pair::{Lengths, Outside, Pair};
 
 /// V of an agent, and what changes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +50,8 @@ pub struct Powers {
 }
 
 /// What commands of one agent came from.
-#[derive(Default)]
 pub(super) struct Tracing {
+    lengths: Lengths,
     /// Velocities of exact positions, and of those that were measured.
     filters: Option<[VelocityFilter; 2]>,
     last_s: Option<f64>,
@@ -62,23 +62,10 @@ pub(super) struct Tracing {
     in_force: [Vec<f64>; 3],
 }
 
-/// What a controller hears and where it should be.
-#[derive(Clone, Copy)]
-pub(super) struct Outside<'a> {
-    pub(super) degree: &'a [f64],
-    pub(super) sums: &'a [f64],
-    pub(super) jets: Jets<'a>,
-    pub(super) time_s: f64,
-}
-
-/// A plant and its controller, with room to work in.
-pub(super) struct Pair<'a, C: Controller> {
-    pub(super) plant: &'a C::Plant,
-    pub(super) controller: &'a C,
-    pub(super) plant_scratch: &'a mut <C::Plant as Plant>::Scratch,
-    pub(super) scratch: &'a mut C::Scratch,
-    /// Numbers of the input, of what is shown, and of the controller's state.
-    pub(super) lengths: [usize; 3],
+/// A plant and its controller, as they are asked here.
+struct Asking<'a> {
+    pair: &'a mut dyn Pair,
+    lengths: Lengths,
 }
 
 /// What a controller asks for, how its state moves, and what it shows.
@@ -103,28 +90,30 @@ fn as_computed(computed: &[f64], applied: &[f64]) -> Vec<f64> {
 const STEP: f64 = 1.0 / 256.0;
 
 impl Tracing {
-    pub(super) fn new(filter: Option<VelocityFilter>, outputs: usize, inputs: usize) -> Self {
-        let none = || core::array::from_fn(|_| vec![0.0; inputs]);
+    pub(super) fn new(filter: Option<VelocityFilter>, lengths: Lengths) -> Self {
+        let none = || core::array::from_fn(|_| vec![0.0; lengths.input]);
         Tracing {
+            lengths,
             filters: filter.map(|filter| [filter.clone(), filter]),
             last_s: None,
-            exact: vec![0.0; outputs],
+            exact: vec![0.0; lengths.output],
             coming: none(),
             in_force: none(),
         }
     }
 
-    /// Traces the command of a sample, in the state `own` of its controller; `measured` is the output as the sensors saw it. Its first `axes` numbers
-    /// are positions, and as many velocities follow where there is a filter.
-    pub(super) fn sampled<C: Controller>(
+    /// Traces the command of a sample, in the state `own` of its controller; `measured` is the output as the sensors saw it. It begins with
+    /// positions, and as many velocities follow where there is a filter.
+    pub(super) fn sampled(
         &mut self,
-        pair: &mut Pair<'_, C>,
+        pair: &mut dyn Pair,
         now_s: f64,
         own: &[f64],
         measured: &[f64],
         outside: Outside<'_>,
-        axes: usize,
     ) -> Result<(), LengthError> {
+        let axes = pair.axes();
+        let mut asking = Asking { pair, lengths: self.lengths };
         let mut outputs = [self.exact.clone(), self.exact.clone(), measured.to_vec()];
         if let Some([exact, seen]) = &mut self.filters {
             let passed_s = self.last_s.map_or(0.0, |last_s| now_s - last_s);
@@ -135,7 +124,7 @@ impl Tracing {
         }
         self.last_s = Some(now_s);
         for (command, output) in self.coming.iter_mut().zip(&outputs) {
-            *command = pair.asked(output, own, outside)?.input;
+            *command = asking.asked(output, own, outside)?.input;
         }
         Ok(())
     }
@@ -146,26 +135,27 @@ impl Tracing {
     }
 
     /// V and V̇ in the state `x` of the plant and `own` of its controller, with the input that is `applied` and what acts from outside.
-    pub(super) fn energy<C: Controller>(
+    pub(super) fn energy(
         &self,
-        pair: &mut Pair<'_, C>,
+        pair: &mut dyn Pair,
         [x, own]: [&[f64]; 2],
         outside: Outside<'_>,
         [applied, external]: [&[f64]; 2],
     ) -> Result<Energy, LengthError> {
-        let (ideal, d_own, Balance { value, dissipation }) = pair.balance(x, own, outside)?;
+        let mut asking = Asking { pair, lengths: self.lengths };
+        let (ideal, d_own, Balance { value, dissipation }) = asking.balance(x, own, outside)?;
         let [held, reconstructed, computed] = &self.in_force;
         let applied = &as_computed(computed, applied);
         let rates: Vec<Vec<f64>> = [&ideal[..], held, reconstructed, computed, applied]
             .into_iter()
-            .map(|input| pair.rate(x, input, &[]))
+            .map(|input| asking.rate(x, input, &[]))
             .collect::<Result<_, _>>()?;
-        let pushed = pair.rate(x, applied, external)?;
+        let pushed = asking.rate(x, applied, external)?;
         let difference = |a: &[f64], b: &[f64]| b.iter().zip(a).map(|(b, a)| b - a).collect::<Vec<f64>>();
         let back: Vec<f64> = d_own.iter().map(|rate| -rate).collect();
         let still = vec![0.0; own.len()];
         let mut along = |from: &[f64], to: &[f64], own_rate: &[f64]| {
-            pair.derivative([x, own], outside, [&difference(from, to), own_rate])
+            asking.derivative([x, own], outside, [&difference(from, to), own_rate])
         };
         let powers = Powers {
             dissipated: -dissipation,
@@ -179,20 +169,13 @@ impl Tracing {
     }
 }
 
-impl<C: Controller> Pair<'_, C> {
-    fn given<'g>(&self, output: &'g [f64], outside: Outside<'g>) -> Result<Given<'g, C>, LengthError> {
-        let axes = self.plant.axes();
-        let sums = outside.sums.get(..C::Exchange::CHANNELS * axes).unwrap_or(outside.sums);
-        let heard = Heard::new(outside.degree, sums, axes)?.at(outside.time_s);
-        Ok(Given { measured: self.controller.see(output)?, heard, target: outside.jets })
-    }
-
+impl Asking<'_> {
     /// What the controller says to an output of its plant.
     fn asked(&mut self, output: &[f64], own: &[f64], outside: Outside<'_>) -> Result<Answer, LengthError> {
-        let [mut input, mut shown, mut d_state] = self.lengths.map(|length| vec![0.0; length]);
-        let given = self.given(output, outside)?;
+        let Lengths { input, shown, controller, .. } = self.lengths;
+        let [mut input, mut shown, mut d_state] = [input, shown, controller].map(|length| vec![0.0; length]);
         let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
-        self.controller.evaluate(self.scratch, given, own, asked)?;
+        self.pair.evaluate(output, outside, own, asked)?;
         Ok(Answer { input, d_state, shown })
     }
 
@@ -203,18 +186,16 @@ impl<C: Controller> Pair<'_, C> {
         own: &[f64],
         outside: Outside<'_>,
     ) -> Result<(Vec<f64>, Vec<f64>, Balance), LengthError> {
-        let mut output = vec![0.0; self.plant.output_len()];
-        self.plant.output(self.plant_scratch, x, &mut output)?;
+        let mut output = vec![0.0; self.lengths.output];
+        self.pair.output(x, &mut output)?;
         let Answer { input, d_state, shown } = self.asked(&output, own, outside)?;
-        let given = self.given(&output, outside)?;
-        let truth = Truth { plant: self.plant, state: x, external: &[] };
-        let balance = self.controller.balance(self.scratch, truth, given, own, &shown)?;
+        let balance = self.pair.balance([x, &[]], &output, outside, own, &shown)?;
         Ok((input, d_state, balance))
     }
 
     fn rate(&mut self, x: &[f64], input: &[f64], external: &[f64]) -> Result<Vec<f64>, LengthError> {
         let mut rate = vec![0.0; x.len()];
-        self.plant.rate(self.plant_scratch, x, input, external, &mut rate)?;
+        self.pair.rate(x, [input, external], &mut rate)?;
         Ok(rate)
     }
 

@@ -2,7 +2,6 @@
 
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::total;
-use forwardstep_core::reference::{Composite, Estimates, Position, PositionVelocity};
 use forwardstep_core::robot::Lagrangian;
 use forwardstep_core::{Gain, InverseQuadratic, Lanes, ResolvedGain, Vectors};
 
@@ -10,10 +9,10 @@ use super::assembly::{Assembly, effort_limits};
 use super::columns::Columns;
 use super::error::SetupError;
 use super::population::Population;
-use super::references::{Transmits, reference};
-use super::robot_batch::Member;
+use super::references::dynamics;
+use super::robot_batch::{Layout, Member, RobotBatch, Robots};
 use crate::agents::{Adaptive, Known, RobotModel};
-use crate::setup::{AgentSetup, Exchange, Setup};
+use crate::setup::{AgentSetup, Setup};
 
 /// Batches of at least so many agents are worked on in lanes.
 const LANES_FROM: usize = 3;
@@ -42,35 +41,31 @@ pub(super) fn batches(setup: &Setup) -> Vec<Vec<usize>> {
 
 /// Robots of one model under (6)–(7), side by side.
 pub(super) fn batch<M: RobotModel>(model: &M, assembly: &Assembly<'_>) -> Result<Box<dyn Columns>, SetupError> {
-    match assembly.setup().exchange {
-        Exchange::Position => boxed::<M::Kernel, Position>(model.kernel(), assembly),
-        Exchange::PositionVelocity => boxed::<M::Kernel, PositionVelocity>(model.kernel(), assembly),
-        Exchange::Estimates => boxed::<M::Kernel, Estimates>(model.kernel(), assembly),
-        Exchange::Composite => boxed::<M::Kernel, Composite>(model.kernel(), assembly),
-    }
+    boxed(model.kernel(), assembly)
 }
 
-fn boxed<R, X>(robot: R, assembly: &Assembly<'_>) -> Result<Box<dyn Columns>, SetupError>
+fn boxed<R>(robot: R, assembly: &Assembly<'_>) -> Result<Box<dyn Columns>, SetupError>
 where
     R: Lagrangian<f64> + Lagrangian<Lanes<8>> + Clone + Send + Sync + 'static,
-    X: Transmits,
 {
     let setup = assembly.setup();
     let mut members = Vec::new();
     for agent in assembly.agents() {
         members.push(member(&robot, &Assembly::new(setup, std::slice::from_ref(agent)))?);
     }
-    let reference = reference::<X>(assembly)?;
+    let reference = dynamics(assembly)?;
     let sampled = setup.control.is_some();
     // What a held torque does is not what the balance balances.
     let balance = setup.solver.balance && !sampled;
+    let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
+    let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
+    let layout = Layout::new([members.len(), m, p, reference.leads().vectors()], adaptive, balance);
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
-    Ok(match Vectors::of_this_processor().filter(|_| members.len() >= LANES_FROM) {
-        Some(vectors) => {
-            Box::new(Population::<R, X, Lanes<8>>::new(robot, vectors, members, reference, sampled, balance))
-        }
-        None => Box::new(Population::<R, X, f64>::new(robot, (), members, reference, sampled, balance)),
-    })
+    let robots: Box<dyn Robots> = match Vectors::of_this_processor().filter(|_| members.len() >= LANES_FROM) {
+        Some(vectors) => Box::new(RobotBatch::<R, Lanes<8>>::new(robot, vectors, &members, layout)),
+        None => Box::new(RobotBatch::<R, f64>::new(robot, (), &members, layout)),
+    };
+    Ok(Box::new(Population::new(members, reference, robots, layout, sampled)))
 }
 
 /// The agent of `assembly` with its gains, checked.

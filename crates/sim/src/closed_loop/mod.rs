@@ -5,7 +5,7 @@
 //! - `columns`: what the closed loop asks of its parts.
 //! - `population`: agents of one kind, side by side in columns: reference dynamics, then the robots.
 //! - `asked`: what their reference dynamics ask for.
-//! - `solo`: one agent by itself: any plant under any controller.
+//! - `solo`: one agent by itself: any plant under any controller; `pair`: what it asks of both.
 //! - `sampler`: sampled controllers with their sensors and actuators.
 //! - `sampling`: the instants at which they sample and act.
 //! - `pushes`: what acts on the robots from outside.
@@ -33,6 +33,7 @@ mod gain_rates;
 mod guide;
 mod injected;
 mod members;
+mod pair;
 mod population;
 mod probe;
 mod probe_reference;
@@ -58,6 +59,6 @@ pub use probe::probe_balance;
 pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;
-pub use sampled_map::{SampledJacobian, SampledLoop, sampled_jacobian, sampled_loop};
+pub use sampled_map::{SampledLoop, sampled_loop};
 pub use valid::validate;
 pub use velocity_quantity::VelocityQuantity;

@@ -14,37 +14,38 @@
 
 use std::ops::Range;
 
+use forwardstep_core::LengthError;
 use forwardstep_core::controller::Trouble;
-use forwardstep_core::reference::{Choice, Derived, Heard, Measured, Reference, ReferenceOut, Sliding};
-use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::reference::{Choice, Derived, Measured, ReferenceOut, Sliding};
+use forwardstep_core::robot::TwoVelocity;
 use forwardstep_core::sampled::{Recipe, Sampled, StartState};
-use forwardstep_core::{LengthError, Packed};
 
 use super::asked::{Layer, add_sign_terms_now, argument, evaluate};
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
-use super::gain_rates::gain_rates;
 use super::injected::Energy;
 use super::recipes::used;
-use super::references::{AnyReference, Transmits, reference};
-use super::robot_batch::{Drive, Layout, Member, RobotBatch};
+use super::references::dynamics;
+use super::robot_batch::{Drive, Layout, Member, Robots, Seen};
 use super::sampler::{Digital, Sampler, take};
 use crate::agents::Adaptive;
 use crate::recording::{GainRates, Signal};
+use crate::reference::Dynamics;
 use crate::setup::{AgentSetup, Control, Setup};
 
-/// A population of robots `R` that follow reference dynamics that hear `X`, worked on in lanes of `S`.
-pub(crate) struct Population<R: Lagrangian<f64> + Lagrangian<S>, X: Transmits, S: Packed> {
+/// A population of like robots that follow reference dynamics.
+pub(crate) struct Population {
     members: Vec<Member>,
-    reference: AnyReference<X>,
-    robots: RobotBatch<R, S>,
+    reference: Dynamics,
+    robots: Box<dyn Robots>,
+    layout: Layout,
     output: Output,
     /// When control is digital.
     sampler: Option<Sampler>,
     /// When its signs are functions of the instant.
     layer: Option<Layer>,
-    record: RecordWork<<R as Lagrangian<f64>>::Scratch>,
+    record: RecordWork,
 }
 
 /// What the reference asks for at the instant at hand.
@@ -54,59 +55,45 @@ struct Output {
 }
 
 /// Working memory of recording, one member at a time.
-struct RecordWork<T> {
-    scratch: T,
+struct RecordWork {
     d_reference: Vec<f64>,
-    q: Vec<f64>,
-    s: Vec<f64>,
+    seen: Seen,
     mass: Vec<f64>,
     delta: Vec<f64>,
     row: Vec<f64>,
 }
 
-impl<R, X, S> Population<R, X, S>
-where
-    R: Lagrangian<f64> + Lagrangian<S> + Clone + Send + Sync + 'static,
-    X: Transmits,
-    S: Packed,
-{
+impl Population {
     /// `members` share the robot and the reference dynamics; all adapt or none. With `sampled` control will be digital.
     pub(crate) fn new(
-        robot: R,
-        processor: S::Processor,
         members: Vec<Member>,
-        reference: AnyReference<X>,
+        reference: Dynamics,
+        robots: Box<dyn Robots>,
+        layout: Layout,
         sampled: bool,
-        balances: bool,
     ) -> Self {
-        let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
-        let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
-        let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, balances);
         let record = RecordWork {
-            scratch: Lagrangian::<f64>::scratch(&robot),
             d_reference: vec![0.0; layout.theta_hat - layout.reference],
-            q: vec![0.0; m],
-            s: vec![0.0; m],
-            mass: vec![0.0; m * m],
-            delta: vec![0.0; p],
+            seen: Seen::default(),
+            mass: vec![0.0; layout.m * layout.m],
+            delta: vec![0.0; layout.p],
             row: Vec::new(),
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
-        let robots = RobotBatch::new(robot, processor, &members, layout);
-        let layer = match reference.sliding() {
+        let layer = match reference.leads().sliding() {
             Some(Sliding { choice: Choice::Layer { width }, .. }) if !sampled => {
                 Some(Layer { width: *width, selection: vec![0.0; layout.block()] })
             }
             _ => None,
         };
-        let mut population = Population { members, reference, robots, output, sampler: None, layer, record };
+        let mut population = Population { members, reference, robots, layout, output, sampler: None, layer, record };
         population.record.row = vec![0.0; population.signals().len()];
         population
     }
 
     /// The reference of everybody, then everything else pack by pack.
     fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
-        let l = self.robots.layout;
+        let l = self.layout;
         LengthError::check("state", l.len, x.len())?;
         LengthError::check("rate", l.len, dx.len())?;
         dx[..l.block()].copy_from_slice(&x[l.dq..l.reference]);
@@ -116,14 +103,14 @@ where
                 sampler.drive(inputs.external)
             }
             None => {
-                let Output { z, dz } = &mut self.output;
+                let (Output { z, dz }, reference) = (&mut self.output, self.reference.leads());
                 let d_state = &mut dx[l.reference..l.theta_hat];
-                evaluate(&self.reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
-                add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
+                evaluate(reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+                add_sign_terms_now(reference, &mut self.layer, l, x, inputs, dz, d_state)?;
                 Drive { z, dz, held: None, external: inputs.external }
             }
         };
-        (0..self.robots.packs()).try_for_each(|pack| self.robots.act(pack, x, drive, Some(&mut *dx)))
+        self.robots.rates(x, drive, dx)
     }
 
     fn try_record(
@@ -133,72 +120,66 @@ where
         inputs: Inputs<'_>,
         write: &mut dyn FnMut(usize, &[f64]),
     ) -> Result<(), LengthError> {
-        let l = self.robots.layout;
+        let l = self.layout;
+        if self.sampler.is_none() {
+            let (Output { z, dz }, reference) = (&mut self.output, self.reference.leads());
+            let d_state = &mut self.record.d_reference[..];
+            evaluate(reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
+            add_sign_terms_now(reference, &mut self.layer, l, x, inputs, dz, d_state)?;
+        }
         for pack in 0..self.robots.packs() {
+            let Output { z, dz } = &self.output;
             let drive = match &self.sampler {
                 Some(sampler) => sampler.drive(inputs.external),
-                None => {
-                    let Output { z, dz } = &mut self.output;
-                    if pack == 0 {
-                        let d_state = &mut self.record.d_reference[..];
-                        evaluate(&self.reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
-                        add_sign_terms_now(&self.reference, &mut self.layer, l, x, inputs, dz, d_state)?;
-                    }
-                    Drive { z, dz, held: None, external: inputs.external }
-                }
+                None => Drive { z, dz, held: None, external: inputs.external },
             };
-            self.robots.act(pack, x, drive, None)?;
-            let first = self.robots.first(pack);
-            for lane in 0..S::WIDTH.min(l.n - first) {
-                self.fill_row(first + lane, lane, x)?;
-                write(self.members[first + lane].agent, &self.record.row);
+            self.robots.act(pack, x, drive)?;
+            for (lane, member) in self.robots.members(pack).enumerate() {
+                self.robots.see(lane, &mut self.record.seen);
+                self.fill_row(member, x)?;
+                write(self.members[member].agent, &self.record.row);
             }
         }
         Ok(())
     }
 
-    /// Fills the row of the member in one lane of the pack whose signals are in the working memory.
-    fn fill_row(&mut self, member: usize, lane: usize, x: &[f64]) -> Result<(), LengthError> {
-        let (l, w, r) = (self.robots.layout, &self.robots.work, &mut self.record);
-        for (own, pack) in r.q.iter_mut().zip(&w.q).chain(r.s.iter_mut().zip(&w.s)) {
-            *own = pack.lane(lane);
-        }
+    /// Fills the row of the member that was just seen.
+    fn fill_row(&mut self, member: usize, x: &[f64]) -> Result<(), LengthError> {
+        let (l, r, reference) = (self.layout, &mut self.record, self.reference.leads());
+        let (seen, told) = (&r.seen, reference.told());
         let mut slots = r.row.iter_mut();
         let mut put = |value: f64| {
             if let Some(slot) = slots.next() {
                 *slot = value;
             }
         };
-        r.q.iter().copied().for_each(&mut put);
-        w.dq.iter().chain(&w.z).chain(&w.dz).for_each(|v| put(v.lane(lane)));
-        (2 * l.m..self.reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
-        if let Some(held) = X::HELD {
+        seen.q.iter().chain(&seen.dq).chain(&seen.z).chain(&seen.dz).copied().for_each(&mut put);
+        (2 * l.m..reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
+        if let Some(held) = told.held {
             let first = l.reference + held * l.block();
-            (0..X::CHANNELS * l.m).for_each(|column| put(x[first + column * l.n + member]));
+            (0..told.channels() * l.m).for_each(|column| put(x[first + column * l.n + member]));
         }
-        if self.reference.sliding().is_some() {
+        if reference.sliding().is_some() {
             let held = &x[l.theta_hat - l.block()..l.theta_hat];
             let selection = self.layer.as_ref().map_or(held, |layer| &layer.selection);
             (0..l.m).for_each(|axis| put(selection[axis * l.n + member]));
         }
-        r.s.iter().copied().for_each(&mut put);
-        w.applied.iter().for_each(|v| put(v.lane(lane)));
+        seen.s.iter().chain(&seen.applied).copied().for_each(&mut put);
         if l.adaptive {
-            w.theta_hat.iter().for_each(|v| put(v.lane(lane)));
+            seen.theta_hat.iter().copied().for_each(&mut put);
         }
 
         let agent = &mut self.members[member];
-        let robot = &self.robots.robot;
-        Lagrangian::<f64>::mass_matrix(robot, &mut r.scratch, &r.q, &agent.theta, &mut r.mass)?;
+        self.robots.mass_matrix(&seen.q, &agent.theta, &mut r.mass)?;
         let mut lyapunov = 0.0;
-        for (row, s_row) in r.mass.chunks_exact(l.m).zip(&r.s) {
-            for (mass, s_column) in row.iter().zip(&r.s) {
+        for (row, s_row) in r.mass.chunks_exact(l.m).zip(&seen.s) {
+            for (mass, s_column) in row.iter().zip(&seen.s) {
                 lyapunov += 0.5 * mass * s_row * s_column;
             }
         }
         if let Some(cost) = &mut agent.estimate_cost {
-            for ((delta, estimate), truth) in r.delta.iter_mut().zip(&w.theta_hat).zip(&agent.theta) {
-                *delta = estimate.lane(lane) - truth;
+            for ((delta, estimate), truth) in r.delta.iter_mut().zip(&seen.theta_hat).zip(&agent.theta) {
+                *delta = estimate - truth;
             }
             lyapunov += 0.5 * cost.of(&r.delta);
         }
@@ -210,22 +191,18 @@ where
     }
 }
 
-impl<R, X, S> Columns for Population<R, X, S>
-where
-    R: Lagrangian<f64> + Lagrangian<S> + Clone + Send + Sync + 'static,
-    X: Transmits,
-    S: Packed,
-{
+impl Columns for Population {
     fn state_len(&self) -> usize {
-        self.robots.layout.len
+        self.layout.len
     }
 
     fn message(&self) -> usize {
-        X::HELD.map_or(0, |held| self.robots.layout.reference + held * self.robots.layout.block())
+        let held = self.reference.leads().told().held;
+        held.map_or(0, |held| self.layout.reference + held * self.layout.block())
     }
 
     fn append_start(&self, all: &[AgentSetup], x: &mut Vec<f64>) {
-        let (first, l) = (x.len(), self.robots.layout);
+        let (first, l) = (x.len(), self.layout);
         let agents = || self.members.iter().map(|member| &all[member.agent]);
         for axis in 0..l.m {
             x.extend(agents().map(|a| a.start.q[axis]));
@@ -234,7 +211,7 @@ where
             x.extend(agents().map(|a| a.start.dq[axis]));
         }
         // The wanted z(0), ż(0), …, for `start` to replace.
-        for r in 0..self.reference.vectors() {
+        for r in 0..self.reference.leads().vectors() {
             for axis in 0..l.m {
                 let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
                 x.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
@@ -247,11 +224,11 @@ where
     }
 
     fn start(&mut self, _: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
-        let l = self.robots.layout;
+        let l = self.layout;
         let given = x[l.reference..l.theta_hat].to_vec();
         let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
         let measured = Measured { q: &measured[..l.dq], dq: &measured[l.dq..] };
-        self.reference.start(l.m, measured, &given, Heard::new(degree, sums, l.block())?, state)
+        self.reference.leads().start(l.m, measured, &given, Inputs { degree, sums, external: None }, state)
     }
 
     fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
@@ -268,7 +245,7 @@ where
     }
 
     fn motion(&mut self, agent: usize, _: f64, x: &[f64], q: &mut [f64], dq: &mut [f64]) {
-        let l = self.robots.layout;
+        let l = self.layout;
         if let Some(member) = self.members.iter().position(|member| member.agent == agent) {
             take(l.n, member, x, q);
             take(l.n, member, &x[l.dq..], dq);
@@ -276,20 +253,20 @@ where
     }
 
     fn sense(&mut self, t_s: f64, x: &[f64], sent: &mut [f64]) {
-        let l = self.robots.layout;
+        let l = self.layout;
         if let Some(sampler) = &mut self.sampler {
             sampler.sense(t_s, &x[..l.reference], sent);
         }
     }
 
     fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
-        let l = self.robots.layout;
+        let l = self.layout;
         let recipe = |(i, member): (usize, &Member)| {
             let mut state = vec![0.0; (l.balance - l.reference) / l.n];
             take(l.n, i, &x[l.reference..l.balance], &mut state);
-            let reference = reference::<X>(&Assembly::new(setup, &[member.agent]))?;
+            let reference = dynamics(&Assembly::new(setup, &[member.agent]))?;
             let theta_hat = if l.adaptive { state[state.len() - l.p..].to_vec() } else { member.theta.clone() };
-            let mut recipe = Recipe::lagrangian(self.robots.robot.clone(), reference, member.law.clone(), theta_hat);
+            let mut recipe = self.robots.recipe(reference, member.law.clone(), theta_hat);
             recipe.start = StartState::State(state);
             Ok((member.agent, used(recipe, setup, member.agent, l.m)?))
         };
@@ -297,7 +274,7 @@ where
     }
 
     fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>) {
-        let m = self.robots.layout.m;
+        let m = self.layout.m;
         let outputs = [(Signal::Position, m), (Signal::Velocity, m)];
         let agents = self.members.iter().zip(controllers);
         let agents = agents.map(|(member, controller)| Digital::new(control, member.agent, &outputs, controller));
@@ -305,7 +282,7 @@ where
     }
 
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
-        let l = self.robots.layout;
+        let l = self.layout;
         if let Some(sampler) = &mut self.sampler {
             sampler.command(now_s, inputs, &mut x[l.reference..l.balance]);
         }
@@ -333,13 +310,13 @@ where
     }
 
     fn selection(&self) -> Option<Range<usize>> {
-        let l = self.robots.layout;
-        self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
+        let l = self.layout;
+        self.reference.leads().sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
     }
 
     fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
-        let l = self.robots.layout;
-        match self.reference.sliding().map(|sliding| sliding.derived) {
+        let l = self.layout;
+        match self.reference.leads().sliding().map(|sliding| sliding.derived) {
             Some(Derived::Acceleration) => told.copy_from_slice(&dx[l.dq..l.reference]),
             Some(Derived::ReferenceAcceleration) => told.copy_from_slice(&self.output.dz),
             _ => {}
@@ -347,13 +324,13 @@ where
     }
 
     fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
-        let checked = argument(&self.reference, self.robots.layout, x, inputs, told, e);
+        let checked = argument(self.reference.leads(), self.layout, x, inputs, told, e);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
     fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]) {
-        let l = self.robots.layout;
-        if let (Some(sliding), Some(layer)) = (self.reference.sliding(), &mut self.layer) {
+        let l = self.layout;
+        if let (Some(sliding), Some(layer)) = (self.reference.leads().sliding(), &mut self.layer) {
             layer.selection.copy_from_slice(selection);
             let leaning = l.theta_hat - 2 * l.block();
             for (rate, selection) in dx[leaning..].iter_mut().zip(selection) {
@@ -377,18 +354,19 @@ where
     fn pass_kink(&mut self, _: f64, _: &mut [f64]) {}
 
     fn signals(&self) -> Vec<(Signal, usize)> {
-        let l = self.robots.layout;
+        let (l, reference) = (self.layout, self.reference.leads());
+        let told = reference.told();
         let mut signals = Vec::new();
         let mut axes = |signal, count| signals.extend((0..count).map(|axis| (signal, axis)));
         axes(Signal::Position, l.m);
         axes(Signal::Velocity, l.m);
-        for r in 0..self.reference.derivatives().max(2) {
+        for r in 0..reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
         }
-        if X::HELD.is_some() {
-            X::SIGNALS.iter().for_each(|held| axes(*held, l.m));
+        if told.held.is_some() {
+            told.signals.iter().for_each(|held| axes(*held, l.m));
         }
-        if self.reference.sliding().is_some() {
+        if self.reference.leads().sliding().is_some() {
             axes(Signal::Selection, l.m);
         }
         axes(Signal::TrackingError, l.m);
@@ -406,11 +384,11 @@ where
     fn inputs(&self) -> Vec<(Signal, Range<usize>)> {
         let signals = self.signals();
         let first = signals.iter().position(|(signal, _)| *signal == Signal::Torque).unwrap_or(signals.len());
-        vec![(Signal::Torque, first..first + self.robots.layout.m)]
+        vec![(Signal::Torque, first..first + self.layout.m)]
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
-        let l = self.robots.layout;
+        let l = self.layout;
         let agent = self.members[state % l.n].agent;
         let column = |first: usize| (state - first) / l.n;
         let (signal, axis) = if state >= l.balance {
@@ -421,7 +399,8 @@ where
             (Signal::Selection, column(l.theta_hat - l.block()))
         } else if state >= l.reference {
             let (block, axis) = (column(l.reference) / l.m, column(l.reference) % l.m);
-            let held = X::HELD.and_then(|held| X::SIGNALS.get(block.checked_sub(held)?));
+            let told = self.reference.leads().told();
+            let held = told.held.and_then(|held| told.signals.get(block.checked_sub(held)?));
             (held.copied().unwrap_or(Signal::Reference(block as u8)), axis)
         } else if state >= l.dq {
             (Signal::Velocity, column(l.dq))
@@ -432,7 +411,7 @@ where
     }
 
     fn gain_rates(&mut self, agent: usize, x: &[f64]) -> Option<GainRates> {
-        let l = self.robots.layout;
+        let l = self.layout;
         if self.sampler.is_some() {
             return None;
         }
@@ -441,6 +420,6 @@ where
         let Output { z, dz } = &self.output;
         let (q, dq, z, dz) = (own(x), own(&x[l.dq..]), own(z), own(dz));
         let motion = TwoVelocity { q: &q, dq: &dq, z: &z, dz: &dz };
-        gain_rates(&self.robots.robot, &mut self.record.scratch, &self.members[index], motion).ok()?
+        self.robots.gain_rates(&self.members[index], motion).ok()?
     }
 }

@@ -1,15 +1,15 @@
 //! What reference dynamics from outside say of themselves, tried at random states.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::reference::{Composite, Estimates, Heard, Measured, Position, PositionVelocity, ReferenceOut};
+use forwardstep_core::reference::{Measured, ReferenceOut};
 
 use super::assembly::Assembly;
+use super::columns::Inputs;
 use super::error::SetupError;
-use super::references::{AnyReference, Transmits, reference};
+use super::references::dynamics;
 use crate::probe::{Counterexample, Draws, Identity, Probe, STATES, apart};
-use crate::reference::ReferenceFamily;
-use crate::reference::{LinearReference, LinearTerms};
-use crate::setup::{Exchange, Setup};
+use crate::reference::{Dynamics, LinearReference, LinearTerms, ReferenceFamily};
+use crate::setup::Setup;
 
 /// Axes that are tried side by side.
 const AXES: usize = 2;
@@ -21,23 +21,14 @@ const AXES: usize = 2;
 /// # Errors
 /// [`SetupError`] when they cannot be built.
 pub fn probe_reference(setup: &Setup) -> Result<Probe, SetupError> {
-    match setup.exchange {
-        Exchange::Position => probe::<Position>(setup),
-        Exchange::PositionVelocity => probe::<PositionVelocity>(setup),
-        Exchange::Estimates => probe::<Estimates>(setup),
-        Exchange::Composite => probe::<Composite>(setup),
-    }
-}
-
-fn probe<X: Transmits>(setup: &Setup) -> Result<Probe, SetupError> {
     let (mut draws, mut probe) = (Draws::new(), Probe::default());
     for state in 0..if setup.agents.is_empty() { 0 } else { STATES } {
         let agent = state % setup.agents.len();
         let own = &setup.agents[agent];
-        let reference = reference::<X>(&Assembly::new(setup, &[agent]))?;
+        let reference = dynamics(&Assembly::new(setup, &[agent]))?;
         // What a filter holds is no z.
         let leads = setup.reference.interface().family != ReferenceFamily::Backstepping;
-        let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.vectors());
+        let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.leads().vectors());
         let free = if leads { free } else { 0 };
         let tried = Tried::new(reference, &mut draws);
         let linear = setup.reference.linear(own, setup.exchange);
@@ -61,8 +52,8 @@ fn probe<X: Transmits>(setup: &Setup) -> Result<Probe, SetupError> {
 type Failure = (Identity, f64, f64);
 
 /// One agent at random states.
-struct Tried<X: Transmits> {
-    reference: AnyReference<X>,
+struct Tried {
+    reference: Dynamics,
     degree: [f64; 1],
     q: Vec<f64>,
     dq: Vec<f64>,
@@ -81,11 +72,12 @@ struct Given {
     rate: Vec<f64>,
 }
 
-impl<X: Transmits> Tried<X> {
-    fn new(reference: AnyReference<X>, draws: &mut Draws) -> Self {
+impl Tried {
+    fn new(reference: Dynamics, draws: &mut Draws) -> Self {
         let mut numbers = |length: usize| (0..length).map(|_| 2.0 * draws.unit()).collect::<Vec<f64>>();
-        let states = AXES * reference.vectors();
-        let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * X::CHANNELS));
+        let (vectors, channels) = (reference.leads().vectors(), reference.leads().told().channels());
+        let states = AXES * vectors;
+        let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * channels));
         let (state, other) = (numbers(states), numbers(states));
         let accelerations = [numbers(AXES), numbers(AXES)];
         let degree = [1.0 + draws.unit()];
@@ -96,8 +88,8 @@ impl<X: Transmits> Tried<X> {
         let numbers = |length| vec![0.0; length];
         let mut given = Given { z: numbers(AXES), dz: numbers(AXES), rate: numbers(state.len()) };
         let out = ReferenceOut { z: &mut given.z, dz: &mut given.dz, d_state: &mut given.rate };
-        let heard = Heard::new(&self.degree, sums, AXES)?;
-        self.reference.evaluate(AXES, Measured { q, dq }, state, heard, out)?;
+        let heard = Inputs { degree: &self.degree, sums, external: None };
+        self.reference.leads().evaluate(AXES, Measured { q, dq }, state, (0.0, heard), out)?;
         Ok(given)
     }
 
@@ -114,15 +106,15 @@ impl<X: Transmits> Tried<X> {
         let (alone, nothing) = (alone?, nothing?);
         let turned = self.at([&no_q, &no_q, &no_sums, &swapped(other)])?;
         let mut started = origin.clone();
-        let heard = Heard::new(&self.degree, sums, AXES)?;
-        self.reference.start(AXES, Measured { q, dq }, state, heard, &mut started)?;
+        let heard = Inputs { degree: &self.degree, sums, external: None };
+        self.reference.leads().start(AXES, Measured { q, dq }, state, heard, &mut started)?;
         let begun = self.at([q, dq, sums, &started])?;
 
         let mut pairs: Vec<Failure> = Vec::new();
         let mut equal = |identity, value: &[f64], expected: &[f64]| {
             pairs.extend(value.iter().zip(expected).map(|(value, expected)| (identity, *value, *expected)));
         };
-        let derivatives = self.reference.derivatives() * AXES;
+        let derivatives = self.reference.leads().derivatives() * AXES;
         if derivatives > 0 {
             equal(Identity::Derivatives, &here.z, &state[..AXES]);
             equal(Identity::Derivatives, &here.rate[..derivatives - AXES], &state[AXES..derivatives]);
@@ -130,7 +122,7 @@ impl<X: Transmits> Tried<X> {
         }
         let changes: Vec<f64> = moved.rate.iter().zip(&here.rate).map(|(moved, here)| moved - here).collect();
         let linear: Vec<f64> = alone.rate.iter().zip(&nothing.rate).map(|(alone, zero)| alone - zero).collect();
-        if self.reference.is_affine() {
+        if self.reference.leads().is_affine() {
             equal(Identity::Affine, &changes, &linear);
             let swapped_back: Vec<f64> =
                 swapped(&turned.rate).iter().zip(&swapped(&nothing.rate)).map(|(turned, zero)| turned - zero).collect();
@@ -156,7 +148,7 @@ impl<X: Transmits> Tried<X> {
     /// linearity of what it is the derivative of.
     fn linear_form(&self, linear: &LinearReference, here: &Given) -> Result<Vec<Failure>, LengthError> {
         let Tried { q, dq, sums, state, accelerations: [ddq, heard_ddq], .. } = self;
-        let derivatives = self.reference.derivatives();
+        let derivatives = self.reference.leads().derivatives();
         let top = |given: &Given| match derivatives.checked_sub(1) {
             None => given.z.clone(),
             Some(last) => given.rate[last * AXES..(last + 1) * AXES].to_vec(),

@@ -3,9 +3,16 @@
 //! A pack is as many neighbouring members as the scalar `S` has lanes; the bits do not depend on how many that is. Which
 //! reference the robots follow is not known here.
 
+use std::ops::Range;
+
 use forwardstep_core::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use forwardstep_core::robot::{Lagrangian, TwoVelocity};
+use forwardstep_core::sampled::Recipe;
 use forwardstep_core::{InverseQuadratic, Kernel, LengthError, Packed, ResolvedGain};
+
+use super::gain_rates::gain_rates;
+use crate::recording::GainRates;
+use crate::reference::Dynamics;
 
 /// One agent of a population.
 #[derive(Debug)]
@@ -57,22 +64,56 @@ impl Layout {
     }
 }
 
-/// Robots `R` with their laws, worked on in lanes of `S`.
-pub(crate) struct RobotBatch<R: Lagrangian<S>, S: Packed> {
-    pub(crate) robot: R,
-    pub(crate) layout: Layout,
-    processor: S::Processor,
-    packs: Vec<Pack<S>>,
-    pub(crate) work: Work<S, R::Scratch>,
+/// The robots of a population, whatever they are and however many are worked on at a time.
+pub(crate) trait Robots {
+    /// Number of packs.
+    fn packs(&self) -> usize;
+    /// The members of a pack.
+    fn members(&self, pack: usize) -> Range<usize>;
+    /// The rates of q̇, ϑ̂ and the balance of everybody.
+    fn rates(&mut self, x: &[f64], drive: Drive<'_>, dx: &mut [f64]) -> Result<(), LengthError>;
+    /// What acts in one pack at one instant, for [`Robots::see`].
+    fn act(&mut self, pack: usize, x: &[f64], drive: Drive<'_>) -> Result<(), LengthError>;
+    /// What the last act left of the member in one lane of its pack.
+    fn see(&self, lane: usize, seen: &mut Seen);
+    /// M(q) with these parameters, row by row.
+    fn mass_matrix(&mut self, q: &[f64], theta: &[f64], mass: &mut [f64]) -> Result<(), LengthError>;
+    /// How fast its gains make a member.
+    fn gain_rates(&mut self, member: &Member, motion: TwoVelocity<'_, f64>) -> Result<Option<GainRates>, LengthError>;
+    /// The sampled controller of one of them.
+    fn recipe(&self, reference: Dynamics, law: SlotineLi, theta_hat: Vec<f64>) -> Recipe;
 }
 
-impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
+/// One member at one instant.
+#[derive(Debug, Default)]
+pub(crate) struct Seen {
+    pub(crate) q: Vec<f64>,
+    pub(crate) dq: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+    pub(crate) dz: Vec<f64>,
+    pub(crate) s: Vec<f64>,
+    pub(crate) applied: Vec<f64>,
+    pub(crate) theta_hat: Vec<f64>,
+}
+
+/// Robots `R` with their laws, worked on in lanes of `S`.
+pub(crate) struct RobotBatch<R: Lagrangian<f64> + Lagrangian<S>, S: Packed> {
+    robot: R,
+    layout: Layout,
+    processor: S::Processor,
+    packs: Vec<Pack<S>>,
+    work: Work<S, <R as Lagrangian<S>>::Scratch>,
+    /// For one member at a time.
+    alone: <R as Lagrangian<f64>>::Scratch,
+}
+
+impl<R: Lagrangian<f64> + Lagrangian<S>, S: Packed> RobotBatch<R, S> {
     /// `members` share the robot and the order; all adapt or none.
     pub(crate) fn new(robot: R, processor: S::Processor, members: &[Member], layout: Layout) -> Self {
         let packs = (0..members.len()).step_by(S::WIDTH).map(|first| Pack::new(first, members)).collect();
         let (vector, parameters) = (|| vec![S::ZERO; layout.m], || vec![S::ZERO; layout.p]);
         let work = Work {
-            scratch: robot.scratch(),
+            scratch: Lagrangian::<S>::scratch(&robot),
             q: vector(),
             dq: vector(),
             z: vector(),
@@ -88,33 +129,82 @@ impl<R: Lagrangian<S>, S: Packed> RobotBatch<R, S> {
             yt_s: parameters(),
             d_theta_hat: parameters(),
         };
-        RobotBatch { robot, layout, processor, packs, work }
-    }
-
-    /// Number of packs.
-    pub(crate) fn packs(&self) -> usize {
-        self.packs.len()
-    }
-
-    /// Index of the first member of a pack.
-    pub(crate) fn first(&self, pack: usize) -> usize {
-        self.packs[pack].first
+        let alone = Lagrangian::<f64>::scratch(&robot);
+        RobotBatch { robot, layout, processor, packs, work, alone }
     }
 
     /// s, τ, q̈ (and Yᵀs, unless the torque is held) of one pack into the working memory and, if there is a `dx`, the rates
     /// of q̇, ϑ̂ and the balance into it.
-    pub(crate) fn act(
-        &mut self,
-        pack: usize,
-        x: &[f64],
-        drive: Drive<'_>,
-        dx: Option<&mut [f64]>,
-    ) -> Result<(), LengthError> {
+    fn run(&mut self, pack: usize, x: &[f64], drive: Drive<'_>, dx: Option<&mut [f64]>) -> Result<(), LengthError> {
         S::run(self.processor, Act { robots: self, pack, x, drive, dx })
     }
 }
 
-/// What moves a robots at one instant, as blocks of columns.
+impl<R, S> Robots for RobotBatch<R, S>
+where
+    R: Lagrangian<f64> + Lagrangian<S> + Clone + Send + Sync + 'static,
+    S: Packed,
+{
+    fn packs(&self) -> usize {
+        self.packs.len()
+    }
+
+    fn members(&self, pack: usize) -> Range<usize> {
+        let first = self.packs[pack].first;
+        first..(first + S::WIDTH).min(self.layout.n)
+    }
+
+    fn rates(&mut self, x: &[f64], drive: Drive<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
+        (0..self.packs.len()).try_for_each(|pack| self.run(pack, x, drive, Some(&mut *dx)))
+    }
+
+    fn act(&mut self, pack: usize, x: &[f64], drive: Drive<'_>) -> Result<(), LengthError> {
+        self.run(pack, x, drive, None)
+    }
+
+    fn see(&self, lane: usize, seen: &mut Seen) {
+        let w = &self.work;
+        for (packs, seen) in [
+            (&w.q, &mut seen.q),
+            (&w.dq, &mut seen.dq),
+            (&w.z, &mut seen.z),
+            (&w.dz, &mut seen.dz),
+            (&w.s, &mut seen.s),
+            (&w.applied, &mut seen.applied),
+            (&w.theta_hat, &mut seen.theta_hat),
+        ] {
+            seen.clear();
+            seen.extend(packs.iter().map(|pack| pack.lane(lane)));
+        }
+    }
+
+    fn mass_matrix(&mut self, q: &[f64], theta: &[f64], mass: &mut [f64]) -> Result<(), LengthError> {
+        Lagrangian::<f64>::mass_matrix(&self.robot, &mut self.alone, q, theta, mass)
+    }
+
+    fn gain_rates(&mut self, member: &Member, motion: TwoVelocity<'_, f64>) -> Result<Option<GainRates>, LengthError> {
+        gain_rates(&self.robot, &mut self.alone, member, motion)
+    }
+
+    fn recipe(&self, reference: Dynamics, law: SlotineLi, theta_hat: Vec<f64>) -> Recipe {
+        recipe(self.robot.clone(), reference, law, theta_hat)
+    }
+}
+
+/// The same for any number of lanes, so that it is compiled once for a robot.
+fn recipe<R>(robot: R, reference: Dynamics, law: SlotineLi, theta_hat: Vec<f64>) -> Recipe
+where
+    R: Lagrangian<f64> + Clone + Send + Sync + 'static,
+{
+    match reference {
+        Dynamics::Position(reference) => Recipe::lagrangian(robot, reference, law, theta_hat),
+        Dynamics::PositionVelocity(reference) => Recipe::lagrangian(robot, reference, law, theta_hat),
+        Dynamics::Estimates(reference) => Recipe::lagrangian(robot, reference, law, theta_hat),
+        Dynamics::Composite(reference) => Recipe::lagrangian(robot, reference, law, theta_hat),
+    }
+}
+
+/// What moves robots at one instant, as blocks of columns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'a> {
     /// z and ż, which are states for some references and not for others.
@@ -126,7 +216,7 @@ pub(crate) struct Drive<'a> {
     pub(crate) external: Option<&'a [f64]>,
 }
 
-struct Act<'a, R: Lagrangian<S>, S: Packed> {
+struct Act<'a, R: Lagrangian<f64> + Lagrangian<S>, S: Packed> {
     robots: &'a mut RobotBatch<R, S>,
     pack: usize,
     x: &'a [f64],
@@ -134,7 +224,7 @@ struct Act<'a, R: Lagrangian<S>, S: Packed> {
     dx: Option<&'a mut [f64]>,
 }
 
-impl<R: Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
+impl<R: Lagrangian<f64> + Lagrangian<S>, S: Packed> Kernel for Act<'_, R, S> {
     type Output = Result<(), LengthError>;
 
     #[inline(always)]
@@ -171,23 +261,23 @@ struct Pack<S> {
 }
 
 /// Working memory of one pack.
-pub(crate) struct Work<S, T> {
-    pub(crate) scratch: T,
-    pub(crate) q: Vec<S>,
-    pub(crate) dq: Vec<S>,
-    pub(crate) z: Vec<S>,
-    pub(crate) dz: Vec<S>,
-    pub(crate) s: Vec<S>,
-    pub(crate) tau: Vec<S>,
-    pub(crate) applied: Vec<S>,
+struct Work<S, T> {
+    scratch: T,
+    q: Vec<S>,
+    dq: Vec<S>,
+    z: Vec<S>,
+    dz: Vec<S>,
+    s: Vec<S>,
+    tau: Vec<S>,
+    applied: Vec<S>,
     /// What acts from outside, when anything does.
     external: Vec<S>,
     net: Vec<S>,
-    pub(crate) ddq: Vec<S>,
-    pub(crate) damped: Vec<S>,
-    pub(crate) theta_hat: Vec<S>,
-    pub(crate) yt_s: Vec<S>,
-    pub(crate) d_theta_hat: Vec<S>,
+    ddq: Vec<S>,
+    damped: Vec<S>,
+    theta_hat: Vec<S>,
+    yt_s: Vec<S>,
+    d_theta_hat: Vec<S>,
 }
 
 impl<S: Packed> Pack<S> {

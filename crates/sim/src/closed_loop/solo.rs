@@ -1,4 +1,4 @@
-//! One agent by itself: any [`Plant`] under any [`Controller`], as a block of the closed loop.
+//! One agent by itself: any plant under any controller, as a block of the closed loop.
 //!
 //! Its state is
 //!
@@ -6,7 +6,7 @@
 //! plant's state   controller's state   ∫ dissipation [1, if the balance is on]
 //! ```
 //!
-//! and everything that is particular to a system is said by the two traits. An agent with an offset d(t) is described
+//! and everything that is particular to a system is said by its [`Pair`]. An agent with an offset d(t) is described
 //! relative to it: what stands in the block and what is sent is x − d, followed by ẋ − ḋ where there is a velocity, so that
 //! agents with offsets agree like any others. The plant and the controller see x and ẋ.
 //!
@@ -15,30 +15,27 @@
 mod block;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::{Asked, Controller, Given, JetsBuffer, Truth};
-use forwardstep_core::plant::{Plant, total};
-use forwardstep_core::reference::Heard;
+use forwardstep_core::controller::{Asked, Balance, JetsBuffer};
+use forwardstep_core::plant::total;
 use forwardstep_core::signal::Block;
 
 use super::columns::Inputs;
-use super::injected::{Energy, Outside, Pair, Tracing};
+use super::injected::{Energy, Tracing};
+use super::pair::{Lengths, Outside, Pair};
 use super::sampler::Digital;
 use crate::recording::Signal;
 use crate::trajectory::Pieces;
 
 /// A plant and its controller.
-pub(crate) struct Solo<C: Controller> {
+pub(crate) struct Solo {
     agent: usize,
-    plant: C::Plant,
-    controller: C,
+    pair: Box<dyn Pair>,
     target: Option<Target>,
     effort_limits: Option<Vec<f64>>,
     digital: Option<Digital>,
     /// What commands came from, where that is asked for.
     tracing: Option<Tracing>,
     layout: Layout,
-    plant_scratch: <C::Plant as Plant>::Scratch,
-    scratch: C::Scratch,
     now: Now,
     /// What the controller shows, when control is digital.
     shown: Vec<Block>,
@@ -84,56 +81,41 @@ struct Now {
     d_controller: Vec<f64>,
 }
 
-impl<C: Controller> Solo<C> {
+impl Solo {
     /// The agent number `agent`. What a held input does is not what the balance balances, so there is none where it will be
     /// `sampled`.
-    pub(crate) fn new(
+    pub(super) fn new(
         agent: usize,
-        plant: C::Plant,
-        controller: C,
+        pair: Box<dyn Pair>,
         target: Option<Target>,
         effort_limits: Option<Vec<f64>>,
         sampled: bool,
         balance: bool,
     ) -> Self {
-        let (states, inputs) = (plant.states(), plant.inputs());
+        let ([states, _], inputs, lengths) = (pair.states(), pair.inputs(), Lengths::of(&*pair));
         let torque = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
         let layout = Layout {
-            m: plant.axes(),
+            m: pair.axes(),
             velocities: states.get(1).filter(|(signal, _)| *signal == Signal::Velocity).map_or(0, |(_, count)| *count),
             plant: total(&states),
-            controller: total(&controller.states()),
+            controller: lengths.controller,
             balance: balance && !sampled,
             torque: torque.map_or((0, 0), |at| (total(&inputs[..at]), inputs[at].1)),
         };
-        let input = total(&inputs);
         let now = Now {
             t_s: 0.0,
             jets: JetsBuffer::new(
                 target.as_ref().map_or(0, |target| target.trajectory.axes()),
-                controller.target_derivatives(),
+                pair.target_derivatives(),
             ),
             state: vec![0.0; layout.plant],
-            output: vec![0.0; plant.output_len()],
-            input: vec![0.0; input],
-            shown: vec![0.0; total(&controller.shown())],
-            d_controller: vec![0.0; layout.controller],
+            output: vec![0.0; lengths.output],
+            input: vec![0.0; lengths.input],
+            shown: vec![0.0; lengths.shown],
+            d_controller: vec![0.0; lengths.controller],
         };
-        Solo {
-            agent,
-            plant_scratch: plant.scratch(),
-            scratch: controller.scratch(),
-            plant,
-            controller,
-            target,
-            effort_limits,
-            digital: None,
-            tracing: None,
-            layout,
-            now,
-            shown: Vec::new(),
-            row: Vec::new(),
-        }
+        let (digital, tracing, shown, row) = (None, None, Vec::new(), Vec::new());
+        Solo { agent, pair, target, effort_limits, digital, tracing, layout, now, shown, row }
     }
 
     fn is_offset(&self) -> bool {
@@ -156,27 +138,26 @@ impl<C: Controller> Solo<C> {
                 }
             }
         }
-        self.plant.output(&mut self.plant_scratch, &self.now.state, &mut self.now.output)
+        self.pair.output(&self.now.state, &mut self.now.output)
     }
 
     /// The input that reaches the plant, what is shown, and the rate of the controller's state.
     fn control(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
-        let Layout { m, plant, .. } = self.layout;
+        let plant = self.layout.plant;
         let Now { t_s, jets, state, output, input, shown, d_controller } = &mut self.now;
         if let Some(digital) = &self.digital {
             input.copy_from_slice(digital.held());
             d_controller.fill(0.0);
         } else {
             let own = &x[plant..self.layout.controller_end()];
-            let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(*t_s);
-            let given = Given { measured: self.controller.see(output)?, heard, target: jets.jets() };
-            self.controller.evaluate(&mut self.scratch, given, own, Asked { input, d_state: d_controller, shown })?;
+            let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
+            self.pair.evaluate(output, outside, own, Asked { input, d_state: d_controller, shown })?;
         }
         let (first, count) = self.layout.torque;
         for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {
             *torque = torque.clamp(-limit, *limit);
         }
-        self.plant.limit(state, input);
+        self.pair.limit(state, input);
         Ok(())
     }
 
@@ -186,7 +167,7 @@ impl<C: Controller> Solo<C> {
         let Layout { m, velocities, plant, .. } = self.layout;
         let end = self.layout.controller_end();
         let external = inputs.external.unwrap_or_default();
-        self.plant.rate(&mut self.plant_scratch, &self.now.state, &self.now.input, external, &mut dx[..plant])?;
+        self.pair.rate(&self.now.state, [&self.now.input, external], &mut dx[..plant])?;
         if self.is_offset() {
             for (k, jet) in self.now.jets.jets().iter().enumerate().take(m) {
                 dx[k] -= jet[1];
@@ -204,18 +185,17 @@ impl<C: Controller> Solo<C> {
 
     /// V and what it loses; needs what [`Solo::control`] left.
     fn balance(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(f64, f64), LengthError> {
-        let Layout { m, plant, .. } = self.layout;
-        let own = &x[plant..self.layout.controller_end()];
-        let heard = Heard::new(inputs.degree, inputs.sums, m)?.at(self.now.t_s);
-        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: self.now.jets.jets() };
-        let truth = Truth { plant: &self.plant, state: &self.now.state, external: inputs.external.unwrap_or_default() };
-        let balance = self.controller.balance(&mut self.scratch, truth, given, own, &self.now.shown)?;
-        Ok((balance.value, balance.dissipation))
+        let own = &x[self.layout.plant..self.layout.controller_end()];
+        let Now { t_s, jets, state, output, shown, .. } = &self.now;
+        let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
+        let truth = [&state[..], inputs.external.unwrap_or_default()];
+        let Balance { value, dissipation } = self.pair.balance(truth, output, outside, own, shown)?;
+        Ok((value, dissipation))
     }
 
     fn try_record(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
         self.look(t_s, x)?;
-        self.plant.settle(&mut self.now.state);
+        self.pair.settle(&mut self.now.state);
         self.control(x, inputs)?;
         let (value, _) = self.balance(x, inputs)?;
         self.row.clear();
@@ -240,14 +220,7 @@ impl<C: Controller> Solo<C> {
             target.trajectory.trajectory().jets_into(now_s, &mut jets);
         }
         let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: now_s };
-        let mut pair = Pair {
-            plant: &self.plant,
-            controller: &self.controller,
-            plant_scratch: &mut self.plant_scratch,
-            scratch: &mut self.scratch,
-            lengths: [self.now.input.len(), self.now.shown.len(), self.layout.controller],
-        };
-        tracing.sampled(&mut pair, now_s, own, digital.output(), outside, self.layout.m)
+        tracing.sampled(&mut *self.pair, now_s, own, digital.output(), outside)
     }
 
     fn try_energy(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>) -> Result<Option<Energy>, LengthError> {
@@ -259,21 +232,14 @@ impl<C: Controller> Solo<C> {
         let Some(tracing) = &self.tracing else { return Ok(None) };
         let own = &x[self.layout.plant..self.layout.controller_end()];
         let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: self.now.jets.jets(), time_s: t_s };
-        let mut pair = Pair {
-            plant: &self.plant,
-            controller: &self.controller,
-            plant_scratch: &mut self.plant_scratch,
-            scratch: &mut self.scratch,
-            lengths: [self.now.input.len(), self.now.shown.len(), self.layout.controller],
-        };
         let acting = [&self.now.input[..], inputs.external.unwrap_or_default()];
-        tracing.energy(&mut pair, [&self.now.state, own], outside, acting).map(Some)
+        tracing.energy(&mut *self.pair, [&self.now.state, own], outside, acting).map(Some)
     }
 
     fn all_signals(&self) -> Vec<Block> {
-        let mut blocks = self.plant.states();
-        blocks.extend(self.plant.inputs());
-        blocks.extend(self.controller.shown());
+        let [mut blocks, _] = self.pair.states();
+        blocks.extend(self.pair.inputs());
+        blocks.extend(self.pair.shown());
         if self.is_offset() {
             blocks.push((Signal::Offset, self.layout.m));
         }

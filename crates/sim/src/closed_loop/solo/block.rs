@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{Controller, Given, JetsBuffer, Trouble};
-use forwardstep_core::plant::Plant;
-use forwardstep_core::reference::Heard;
+use forwardstep_core::controller::{JetsBuffer, Trouble};
 use forwardstep_core::sampled::{self, Recipe, Sampled, StartState};
 use forwardstep_core::signal::Block;
 
@@ -15,13 +13,14 @@ use super::{Layout, Solo, Target};
 use crate::closed_loop::columns::{Columns, Inputs};
 use crate::closed_loop::error::SetupError;
 use crate::closed_loop::injected::{Energy, Tracing};
+use crate::closed_loop::pair::{Lengths, Outside};
 use crate::closed_loop::recipes::used;
 use crate::closed_loop::sampler::Digital;
 use crate::recording::{GainRates, Signal};
 use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
 use crate::trajectory::Pieces;
 
-impl<C: Controller> Columns for Solo<C> {
+impl Columns for Solo {
     fn state_len(&self) -> usize {
         self.layout.controller_end() + usize::from(self.layout.balance)
     }
@@ -52,13 +51,11 @@ impl<C: Controller> Columns for Solo<C> {
     }
 
     fn start(&mut self, agents: &[AgentSetup], x: &mut [f64], degree: &[f64], sums: &[f64]) -> Result<(), LengthError> {
-        let Layout { m, plant, .. } = self.layout;
-        self.plant.settle(&mut x[..plant]);
+        let (plant, end) = (self.layout.plant, self.layout.controller_end());
+        self.pair.settle(&mut x[..plant]);
         self.look(0.0, x)?;
-        let heard = Heard::new(degree, sums, m)?;
-        let given = Given { measured: self.controller.see(&self.now.output)?, heard, target: self.now.jets.jets() };
-        let own = &mut x[plant..plant + self.layout.controller];
-        self.controller.start(&mut self.scratch, given, &agents[self.agent].start.reference, own)
+        let outside = Outside { degree, sums, jets: self.now.jets.jets(), time_s: 0.0 };
+        self.pair.start(&self.now.output, outside, &agents[self.agent].start.reference, &mut x[plant..end])
     }
 
     fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
@@ -97,7 +94,7 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn recipes(&self, setup: &Setup, x: &[f64]) -> Result<Vec<(usize, Recipe)>, SetupError> {
         let Layout { plant, torque: (_, torques), .. } = self.layout;
-        let mut recipe = Recipe::feedback(&self.plant, self.controller.clone());
+        let mut recipe = self.pair.recipe();
         recipe.transmits = setup.exchange.words().len();
         recipe.start = StartState::State(x[plant..self.layout.controller_end()].to_vec());
         recipe.target = self.target.as_ref().map(|Target { trajectory, is_offset }| {
@@ -109,9 +106,8 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn sample(&mut self, control: &Control, controllers: Vec<Box<dyn Sampled>>) {
         let controller = controllers.into_iter().next();
-        self.digital =
-            controller.map(|controller| Digital::new(control, self.agent, &self.plant.outputs(), controller));
-        self.shown = self.controller.shown();
+        self.digital = controller.map(|controller| Digital::new(control, self.agent, &self.pair.outputs(), controller));
+        self.shown = self.pair.shown();
     }
 
     fn command(&mut self, now_s: f64, inputs: Inputs<'_>, x: &mut [f64]) {
@@ -133,14 +129,14 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn trace(&mut self, control: &Control) {
         // A chain of order one has no velocity, though its controller would read one.
-        let reads = self.controller.reads(Signal::Velocity)
-            && self.plant.outputs().contains(&(Signal::Velocity, self.layout.m));
+        let reads =
+            self.pair.reads(Signal::Velocity) && self.pair.outputs().contains(&(Signal::Velocity, self.layout.m));
         let filtered = match control.sensors.velocity {
             VelocitySensor::Filtered { cut_off_hz } if reads => Some(cut_off_hz),
             VelocitySensor::Filtered { .. } | VelocitySensor::Measured => None,
         };
         let filter = filtered.and_then(|hz| VelocityFilter::new(core::f64::consts::TAU * hz, self.layout.m).ok());
-        self.tracing = Some(Tracing::new(filter, self.now.output.len(), self.now.input.len()));
+        self.tracing = Some(Tracing::new(filter, Lengths::of(&*self.pair)));
     }
 
     fn energies(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, each: &mut dyn FnMut(usize, Energy)) {
@@ -172,9 +168,9 @@ impl<C: Controller> Columns for Solo<C> {
 
     fn settle(&mut self, x: &mut [f64]) {
         let Layout { plant, .. } = self.layout;
-        self.plant.settle(&mut x[..plant]);
+        self.pair.settle(&mut x[..plant]);
         if self.digital.is_none() {
-            self.controller.settle(&mut x[plant..plant + self.layout.controller]);
+            self.pair.settle_controller(&mut x[plant..plant + self.layout.controller]);
         }
     }
 
@@ -184,7 +180,7 @@ impl<C: Controller> Columns for Solo<C> {
             return None;
         }
         let own = &x[self.layout.plant..self.layout.controller_end()];
-        self.controller.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
+        self.pair.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
     }
 
     fn next_event_s(&self, after_s: f64) -> f64 {
@@ -236,12 +232,12 @@ impl<C: Controller> Columns for Solo<C> {
             at += count;
             (signal, first..at)
         };
-        self.plant.inputs().into_iter().map(place).collect()
+        self.pair.inputs().into_iter().map(place).collect()
     }
 
     fn locate(&self, state: usize) -> (usize, Signal, usize) {
         let mut first = 0;
-        for (signal, count) in self.plant.states().into_iter().chain(self.controller.states()) {
+        for (signal, count) in self.pair.states().into_iter().flatten() {
             if state < first + count {
                 return (self.agent, signal, state - first);
             }
