@@ -1,5 +1,6 @@
 //! Following a leader: Theorems 8 and 9, Remark 12, one vector to agree on, and an observer of the leader.
 
+use forwardstep_core::controller::Jet;
 use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::push::Push;
@@ -228,10 +229,30 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
     } else {
         period_s * following.drive_bound(None) / following.alpha * swing
     };
-    let end_s = setup.time.end_s;
-    let evidence =
-        FollowingEvidence::Sign { choice: following.choice, sampled, period_s, rate_per_s: alpha_per_s, left, end_s };
+    let (end_s, scale) = (setup.time.end_s, scale(setup, following));
+    let (choice, rate_per_s) = (following.choice, alpha_per_s);
+    let evidence = FollowingEvidence::Sign { choice, sampled, period_s, rate_per_s, left, scale, end_s };
     Hypothesis::new(Id::SetValuedSign, evidence)
+}
+
+/// How far the leader moves along an axis on this run, or an agent starts away from it, whichever is more; infinity where its motion is not known.
+fn scale(setup: &Setup, following: &Following) -> f64 {
+    let Some(leader) = following.motion() else { return f64::INFINITY };
+    let motion = &leader.trajectory;
+    let mut jets = vec![Jet::default(); motion.axes()];
+    let mut at = |t_s: f64| {
+        motion.jets(t_s, &mut jets);
+        jets.iter().map(|jet| jet[0]).collect::<Vec<f64>>()
+    };
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let begun = at(0.0);
+    let gap = setup.agents.iter().map(|agent| apart(&agent.start.q, &begun)).fold(0.0, f64::max);
+    let looks: Vec<Vec<f64>> = (0..=LOOKS).map(|k| at(setup.time.end_s * k as f64 / LOOKS as f64)).collect();
+    let ends = |axis: usize| {
+        let of_axis = looks.iter().map(|q| q[axis]);
+        of_axis.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
+    };
+    (0..begun.len()).map(ends).map(|[low, high]| high - low).fold(gap, f64::max)
 }
 
 /// 1 + b/a for roots −a ± b i, else one.

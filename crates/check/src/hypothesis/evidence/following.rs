@@ -56,6 +56,8 @@ pub enum FollowingEvidence {
         rate_per_s: f64,
         /// About what stays of q_i − q_0, in units of the axes; infinite where no bound of ξ̇₀ is known.
         left: f64,
+        /// How far a leader whose motion is given moves on this run, or agents start away from it, whichever is more; else infinity.
+        scale: f64,
         /// The end of the run, s.
         end_s: f64,
     },
@@ -87,6 +89,8 @@ pub enum FollowingEvidence {
 /// A sign is called set-valued up to this period, as a part of the time in which q_i − q_0 follows it: what stays is about this
 /// part of the largest excursion that a leader can make at the same ξ̇₀.
 pub(in crate::hypothesis) const MOST_HELD: f64 = 0.01;
+/// Nor where what stays is more than this part of how far the leader moves, or agents start away from it.
+pub(in crate::hypothesis) const MOST_LEFT: f64 = 0.01;
 
 impl FollowingEvidence {
     pub(in crate::hypothesis) fn answer(&self) -> Answer {
@@ -99,8 +103,10 @@ impl FollowingEvidence {
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
             // It has no witness: it fails once the leader has arrived, which is promised and not shown.
             FollowingEvidence::GainOverTarget { .. } => Answer::NotShown,
-            FollowingEvidence::Sign { choice, period_s, rate_per_s, end_s, .. } => match choice {
+            FollowingEvidence::Sign { choice, period_s, rate_per_s, left, scale, end_s, .. } => match choice {
                 Choice::Implicit if period_s * rate_per_s > MOST_HELD || period_s >= end_s => Answer::NotCovered,
+                // Where no bound is known nothing is shown of the gain either.
+                Choice::Implicit if left.is_finite() && *left > MOST_LEFT * scale => Answer::NotCovered,
                 Choice::Implicit => Answer::Holds,
                 Choice::Explicit | Choice::Layer { .. } => Answer::NotCovered,
             },

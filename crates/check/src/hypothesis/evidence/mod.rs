@@ -27,7 +27,7 @@ mod surroundings;
 use super::{Answer, Rigour};
 
 pub use following::FollowingEvidence;
-pub(super) use following::MOST_HELD;
+pub(super) use following::{MOST_HELD, MOST_LEFT};
 pub use graph::GraphEvidence;
 pub use kinds::{FactorEverywhere, KindEvidence, Term};
 pub use links::{LinkEvidence, WeightFault};

@@ -4,6 +4,7 @@ use forwardstep_core::reference::Choice;
 use forwardstep_sim::formula::Witness;
 
 use super::numbers::{Shown, as_it_is, bound, bound_below, reached_above, rounded, rounded_up, seconds};
+use crate::hypothesis::evidence::MOST_LEFT;
 use crate::hypothesis::{Answer, FollowingEvidence};
 
 pub(super) fn words(evidence: &FollowingEvidence) -> String {
@@ -34,13 +35,13 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
                 rounded(*t_s)
             )
         }
-        FollowingEvidence::Sign { choice, sampled, period_s, left, end_s, .. } => {
+        FollowingEvidence::Sign { choice, sampled, period_s, left, scale, end_s, .. } => {
             let every = match sampled {
                 false => format!("every {} s", seconds(*period_s)),
                 true => "at every sample".to_owned(),
             };
             match choice {
-                Choice::Implicit => format!("a value of it is solved for {every}{}", held(*left, *period_s >= *end_s)),
+                Choice::Implicit => format!("a value of it is solved for {every}{}", held(*left, *scale, *period_s >= *end_s)),
                 Choice::Explicit => format!("it is set to 1 or −1 {every}, and chatters at that rate"),
                 Choice::Layer { width } => {
                     format!("it is replaced by sat(e/ε) with ε = {width}: an error of that size stays")
@@ -68,9 +69,13 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
 }
 
 /// What is left where a sign is held.
-fn held(left: f64, once: bool) -> String {
+fn held(left: f64, scale: f64, once: bool) -> String {
     let left = if left.is_finite() {
-        format!("; held in between, it leaves an error of about {}", rounded_up(left))
+        let beside = match left > MOST_LEFT * scale {
+            true => format!(", where the leader moves and agents start away from it by {} at most", rounded(scale)),
+            false => String::new(),
+        };
+        format!("; held in between, it leaves an error of about {}{beside}", rounded_up(left))
     } else {
         String::new()
     };

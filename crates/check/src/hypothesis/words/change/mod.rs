@@ -11,7 +11,7 @@ use forwardstep_sim::delay::{Basis, Refuted, Unknown};
 use forwardstep_sim::leader::FollowingDesign;
 
 use super::numbers::{bound, rounded_down, rounded_up};
-use crate::hypothesis::evidence::MOST_HELD;
+use crate::hypothesis::evidence::{MOST_HELD, MOST_LEFT};
 use crate::hypothesis::{
     Answer, Evidence, FollowingEvidence, GraphEvidence, LinkEvidence, LoopEvidence, Named, ReferenceEvidence,
     WeightFault,
@@ -214,11 +214,15 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
             format!("γ above what drives the leader, which along its target is at least {}", rounded_down(*seen))
         }
         FollowingEvidence::GainOverAgent { .. } => "a leader whose motion is given before the run".into(),
-        FollowingEvidence::Sign { choice, sampled, rate_per_s, end_s, .. } => match choice {
-            Choice::Implicit if *sampled => format!("`sample_hz` of at least {}", rounded_up(rate_per_s / MOST_HELD)),
+        FollowingEvidence::Sign { choice, sampled, period_s, rate_per_s, left, scale, end_s } => match choice {
             Choice::Implicit => {
-                let period_s = (MOST_HELD / rate_per_s).min(0.5 * end_s);
-                format!("`sign_period_s` of at most {}", rounded_down(period_s))
+                // What is left is in proportion to the period.
+                let small_s = if left.is_finite() { period_s * MOST_LEFT * scale / left } else { f64::INFINITY };
+                let longest_s = (MOST_HELD / rate_per_s).min(0.5 * end_s).min(small_s);
+                match sampled {
+                    true => format!("`sample_hz` of at least {}", rounded_up(1.0 / longest_s)),
+                    false => format!("`sign_period_s` of at most {}", rounded_down(longest_s)),
+                }
             }
             Choice::Explicit | Choice::Layer { .. } => "`sign = \"implicit\"`".into(),
         },
