@@ -98,12 +98,12 @@ pub fn rate(setup: &Setup) -> Result<Rate, NoRate> {
     // The one at zero is agreement itself.
     let slowest = modes.get(1).ok_or(NoRate::Unclear)?;
     Ok(Rate {
-        root_per_s: [slowest.root.re, slowest.root.im],
+        root_per_s: [slowest.rightmost.re, slowest.rightmost.im],
         multiplicity: slowest.multiplicity,
         correction_per_s: slowest.correction,
-        backward_error: backward_error(&system, slowest.root),
+        backward_error: backward_error(&system, slowest.rightmost),
         excited: slowest.excited(),
-        settled: by_modes(&system, &modes[1..]),
+        settled: by_modes(&system, &modes),
     })
 }
 
@@ -116,7 +116,7 @@ fn all_modes(ideal: &Setup) -> Result<Vec<Mode>, NoRate> {
     let modes = modes(&system, &found, most);
     let fastest = modes.iter().map(|mode| size(mode.root)).fold(0.0, f64::max);
     match &modes[..] {
-        [zero, slowest, ..] if size(zero.root) <= 1e-6 * fastest && zero.multiplicity == 1 && slowest.root.re < 0.0 => {
+        [zero, slowest, ..] if size(zero.root) <= 1e-6 * fastest && zero.members == 1 && slowest.root.re < 0.0 => {
             Ok(modes)
         }
         [first, ..] if first.root.re > 1e-6 * fastest => Err(NoRate::Grows { per_s: first.root.re }),
@@ -206,8 +206,13 @@ fn by_laplacian(system: &Characteristic, roots: &RootSet) -> Option<Vec<C>> {
 /// Rows of the course that the modes give.
 const ROWS: usize = 4000;
 
-/// When the disagreement of these modes settles, relative to that of the start.
+/// By how much the modes that are known may miss the disagreement at the start, as a part of it, to say when it settles.
+const MISSED: f64 = 0.05;
+
+/// When the disagreement of these modes settles, relative to that of the start; the first is agreement. Modes that are near to each other
+/// are large and cancel, so that those which are left out count: then nothing is said.
 fn by_modes(system: &Characteristic, modes: &[Mode]) -> Settled {
+    let (agreement, modes) = (&modes[0], &modes[1..]);
     let starts = |axis: usize| system.start.iter().map(move |agent| agent[axis][0]);
     let spread = |values: &mut dyn Iterator<Item = f64>| {
         let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)]);
@@ -219,7 +224,7 @@ fn by_modes(system: &Characteristic, modes: &[Mode]) -> Settled {
     }
     // Until every mode is well below 1 %.
     let last =
-        |mode: &Mode| libm::log((1000.0 * mode.multiplicity as f64 * mode.excited() / start).max(1.0)) / -mode.root.re;
+        |mode: &Mode| libm::log((1000.0 * mode.members as f64 * mode.excited() / start).max(1.0)) / -mode.root.re;
     let end_s = modes.iter().map(last).fold(0.0, f64::max);
     if !(end_s > 0.0 && end_s.is_finite()) {
         return Settled::At(0.0);
@@ -232,6 +237,14 @@ fn by_modes(system: &Characteristic, modes: &[Mode]) -> Settled {
         }
         q.column_iter().map(|axis| spread(&mut axis.iter().copied())).fold(0.0, f64::max)
     };
+    let whole = modes.iter().fold(agreement.at(0.0), |sum, mode| sum + mode.at(0.0));
+    let missed = |axis: usize| {
+        starts(axis).zip(whole.column(axis).iter()).map(|(q, known)| (q - known).abs()).fold(0.0, f64::max)
+    };
+    let cancels = modes.iter().map(Mode::excited).fold(0.0, f64::max) > 10.0 * start;
+    if cancels && (0..system.axes()).any(|axis| missed(axis) > MISSED * start) {
+        return Settled::NotYet;
+    }
     let mut disagreement: Vec<f64> = t_s.iter().map(at).collect();
     disagreement[0] = start;
     settled(&t_s, &disagreement)

@@ -3,23 +3,41 @@
 //! Around a group of m roots the integrals (1/2πi)∮ (p−c)^k Δ⁻¹b dp = R_k give its part of the solution, e^(ct) Σ_k R_k t^k/k!,
 //! whether the roots are distinct, semisimple or defective; (1/2πi)∮ tr(Δ⁻¹Δ′) dp is m. The trapezoidal rule on a circle that keeps
 //! away from all roots converges geometrically.
+//!
+//! The power sums s_k = Σ (p_i − c)^k = (1/2πi)∮ (p−c)^k tr(Δ⁻¹Δ′) dp tell the roots of a group apart: Newton's identities make their polynomial of them. Where s₂ is
+//! no more than rounding they stand in one place, which is then their mean.
 
 use nalgebra::DMatrix;
 
 use super::characteristic::{C, Characteristic, exp, size};
 
-/// Points on a circle.
+/// Points on a circle: for how many roots are in it and their part of the solution, and to tell them apart, for which high powers of what is
+/// outside count.
 const POINTS: usize = 16;
+const MANY_POINTS: usize = 64;
 /// The radius of the circle, as a part of the distance to the nearest root outside.
 const REACH: f64 = 0.3;
 /// How near roots stand to each other in a group, as a part of the same distance.
 const CLOSE: f64 = 0.03;
+
+/// Roots of a group are told apart where they spread by more than this part of the circle's radius.
+const APART: f64 = 1e-5;
+/// How many are told apart, and of how many agents.
+const MOST_APART: usize = 12;
+const MOST_AGENTS: usize = 30;
+/// With few points on a circle roots seem to spread by this part of its radius.
+const UNSEEN: f64 = 1e-3;
+/// Steps for that: roots that come in pairs converge by halves.
+const STEPS_APART: usize = 200;
 
 /// Some roots that lie close together, and their part of the solution.
 pub(super) struct Mode {
     /// Their mean, 1/s.
     pub(super) root: C,
     /// How many there are.
+    pub(super) members: usize,
+    /// The rightmost of them, 1/s, and how many stand there.
+    pub(super) rightmost: C,
     pub(super) multiplicity: usize,
     /// R₀, R₁, …: a row per agent, a column per axis.
     pub(super) parts: Vec<DMatrix<C>>,
@@ -82,15 +100,15 @@ pub(super) fn modes(system: &Characteristic, candidates: &[C], most: usize) -> V
 }
 
 fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
-    let integral = Integral::around(system, group.centre, group.radius, 1)?;
-    let multiplicity = group.members;
-    let off = size(integral.count - multiplicity as f64);
+    let integral = Integral::around(system, group.centre, group.radius, [1, 1, POINTS])?;
+    let members = group.members;
+    let off = size(integral.sums[0] - members as f64);
     if off.is_nan() || off > 0.1 {
         return None;
     }
-    let mut root = group.centre + integral.mean / multiplicity as f64;
+    let mut root = group.centre + integral.sums[1] / members as f64;
     let mut correction = f64::INFINITY;
-    if multiplicity == 1 {
+    if members == 1 {
         for _ in 0..20 {
             // Where the matrix is singular in `f64` nothing is left to correct.
             let step = newton(system, root).unwrap_or_default();
@@ -103,7 +121,7 @@ fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
     } else {
         // At a root of several Newton's method ends far above rounding, and a mean does not.
         // The smaller circle is off by another rounding and another tail.
-        let again = Integral::around(system, root, group.radius / 3.0, 1)?.mean / multiplicity as f64;
+        let again = Integral::around(system, root, group.radius / 3.0, [1, 1, POINTS])?.sums[1] / members as f64;
         correction = size(again);
         root += again;
     }
@@ -111,9 +129,62 @@ fn mode(system: &Characteristic, group: &Group) -> Option<Mode> {
         return None;
     }
     // What is real stays real.
-    let root = if root.im.abs() < 1e-9 * size(root) { C::from(root.re) } else { root };
-    let parts = Integral::around(system, root, group.radius, multiplicity.min(6))?.parts;
-    Some(Mode { root, multiplicity, parts, correction })
+    let real = |root: C| if root.im.abs() < 1e-9 * size(root) { C::from(root.re) } else { root };
+    let root = real(root);
+    let parts = members.min(6);
+    let (mut rightmost, mut multiplicity) = (root, members);
+    if members == 1 {
+        let parts = Integral::around(system, root, group.radius, [parts, 1, POINTS])?.parts;
+        return Some(Mode { root, members, rightmost, multiplicity, parts, correction });
+    }
+    // Many of them, or those of a large network, are not told apart: how far they spread is then what is not known.
+    let few = members <= MOST_APART && system.agents() <= MOST_AGENTS;
+    let (power, points) = if few { (members, MANY_POINTS) } else { (2, POINTS) };
+    let found = Integral::around(system, root, group.radius, [parts, power, points])?;
+    let spread = (size(found.sums[2]) / members as f64).sqrt();
+    if !few {
+        correction = if spread > UNSEEN * group.radius { correction.max(spread) } else { correction };
+    } else if spread > APART * group.radius {
+        let smaller = Integral::around(system, root, 0.7 * group.radius, [1, power, points])?;
+        let [all, again] = [&found, &smaller].map(|integral| apart_by(&integral.sums));
+        let first = |all: &[C]| all.iter().copied().reduce(|a, b| if b.re > a.re { b } else { a });
+        let (first, first_again) = (first(&all)?, first(&again)?);
+        correction = correction.max(size(first - first_again));
+        // Several in one place come apart by a root of rounding.
+        let there = |p: &&C| size(*p - first) < 1e-3 * group.radius;
+        multiplicity = all.iter().filter(there).count();
+        let sum: C = all.iter().filter(there).sum();
+        rightmost = real(root + sum / multiplicity as f64);
+    }
+    Some(Mode { root, members, rightmost, multiplicity, parts: found.parts, correction })
+}
+
+/// The roots whose power sums these are, from the zeroth on, which is their number.
+fn apart_by(sums: &[C]) -> Vec<C> {
+    let m = sums.len() - 1;
+    // Newton's identities: k e_k = Σ (−1)^(i−1) e_(k−i) s_i, and the polynomial is Σ (−1)^k e_k p^(m−k).
+    let mut e = vec![C::from(1.0)];
+    for k in 1..=m {
+        let terms = (1..=k).map(|i| e[k - i] * sums[i] * if i % 2 == 1 { 1.0 } else { -1.0 });
+        e.push(terms.sum::<C>() / k as f64);
+    }
+    let value = |p: C| {
+        e.iter().enumerate().fold(C::from(0.0), |sum, (k, e)| sum * p + *e * if k % 2 == 0 { 1.0 } else { -1.0 })
+    };
+    // All at once, after Weierstrass, from a circle as wide as they are apart.
+    let wide = (size(sums[2]) / m as f64).sqrt().max(f64::MIN_POSITIVE);
+    let mut roots: Vec<C> =
+        (0..m).map(|k| exp(C::new(0.0, 0.4 + core::f64::consts::TAU * k as f64 / m as f64)) * wide).collect();
+    for _ in 0..STEPS_APART {
+        for k in 0..m {
+            let others: C = (0..m).filter(|j| *j != k).map(|j| roots[k] - roots[j]).product();
+            let step = value(roots[k]) / others;
+            if step.re.is_finite() && step.im.is_finite() {
+                roots[k] -= step;
+            }
+        }
+    }
+    roots
 }
 
 /// 1 / tr(Δ⁻¹Δ′): the step of Newton's method for det Δ.
@@ -147,27 +218,28 @@ pub(super) fn backward_error(system: &Characteristic, p: C) -> f64 {
 
 /// Integrals over a circle, divided by 2πi.
 struct Integral {
-    /// Of tr(Δ⁻¹Δ′): how many roots are inside.
-    count: C,
-    /// Of (p−c) tr(Δ⁻¹Δ′): the sum of their distances from the centre.
-    mean: C,
+    /// Of (p−c)^k tr(Δ⁻¹Δ′): how many roots are inside, the sum of their distances from the centre, that of their squares, ….
+    sums: Vec<C>,
     /// Of (p−c)^k Δ⁻¹b.
     parts: Vec<DMatrix<C>>,
 }
 
 impl Integral {
-    fn around(system: &Characteristic, centre: C, radius: f64, parts: usize) -> Option<Integral> {
+    /// With so many parts, sums up to this power, and points.
+    fn around(system: &Characteristic, centre: C, radius: f64, [parts, power, points]: [usize; 3]) -> Option<Integral> {
         let zero = DMatrix::zeros(system.agents(), system.axes());
-        let mut all = Integral { count: C::from(0.0), mean: C::from(0.0), parts: vec![zero; parts] };
-        for k in 0..POINTS {
-            let angle = core::f64::consts::TAU * (k as f64 + 0.5) / POINTS as f64;
+        let mut all = Integral { sums: vec![C::from(0.0); power + 1], parts: vec![zero; parts] };
+        for k in 0..points {
+            let angle = core::f64::consts::TAU * (k as f64 + 0.5) / points as f64;
             let away = exp(C::new(0.0, angle)) * radius;
             let [delta, slope] = system.matrix(centre + away);
             let lu = delta.lu();
-            let share = away / POINTS as f64;
-            let trace = lu.solve(&slope)?.trace();
-            all.count += share * trace;
-            all.mean += share * away * trace;
+            let share = away / points as f64;
+            let mut term = share * lu.solve(&slope)?.trace();
+            for sum in &mut all.sums {
+                *sum += term;
+                term *= away;
+            }
             let solution = lu.solve(&system.start(centre + away))?;
             let mut factor = share;
             for part in &mut all.parts {
@@ -193,7 +265,7 @@ impl Mode {
 
     /// The largest disagreement that it makes, whatever its phase: of several roots it need not be at the start.
     pub(super) fn excited(&self) -> f64 {
-        let steps = if self.multiplicity > 1 { STEPS } else { 0 };
+        let steps = if self.members > 1 { STEPS } else { 0 };
         let t_s = (0..=steps).map(|step| 0.1 * f64::from(step) / self.root.re.abs());
         let largest = t_s.map(|t_s| libm::exp(self.root.re * t_s) * apart(&self.polynomial(t_s))).fold(0.0, f64::max);
         if self.is_pair() { 2.0 * largest } else { largest }

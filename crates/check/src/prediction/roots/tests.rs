@@ -175,3 +175,21 @@ fn a_large_network_is_decided_by_its_laplacian_if_all_is_uniform() {
     let setup = masses(Exchange::Position, &vec![&[1.0, 2.0][..]; more], &ring(more, 1.0, 0.2));
     assert_eq!(rate(&setup), Err(NoRate::TooLarge { unknowns: more * 9 }));
 }
+
+/// The others of a network in which one agent hears nobody have the roots of their own designs among those of the network.
+#[test]
+fn regress_roots_that_are_nearly_equal_are_told_apart() {
+    for (roots, rightmost) in [
+        (&[1.0, 1.01][..], 1.0),
+        (&[1.0, 1.02, 3.0], 1.0),
+        (&[1.0, 1.001], 1.0),
+        (&[1.14, 1.15, 1.52, 1.69, 3.97], 1.14),
+        (&[1.0, 1.0], 1.0),
+    ] {
+        let setup = masses(Exchange::PositionVelocity, &[roots; 2], &[(0, 1, 1.55, 0.1)]);
+        let found = rate(&setup).unwrap();
+        near(found.root_per_s, C::from(-rightmost), 1e-5);
+        assert!(found.correction_per_s < 1e-5 && found.backward_error < 1e-9, "{roots:?}: {found:?}");
+        assert!(found.multiplicity >= 2, "{roots:?}: {found:?}");
+    }
+}
