@@ -41,7 +41,7 @@ pub use footing::{Footing, Ground};
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
     AgreementBound, Along, AxisBound, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionWatch,
-    LinearisedSampling, LoadReached, MarginAt, MarginReached, NAMED_SHARE, NoReferenceGains, Over, PowerBound,
+    LoadReached, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE, NoReferenceGains, Over, PowerBound,
     PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains, SamplingMargin, StaticLoad,
     WholeLoop, along, fastest_damping, mean_power_w, practical,
 };

@@ -234,7 +234,6 @@ fn bound(setup: &Setup) -> Option<PowerBound> {
     practical(setup).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingPower(bound) => Some(bound),
         Finding::SamplingMargin(_)
-        | Finding::LinearisedSampling(_)
         | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
         | Finding::TrackingDisagreement(_) => None,

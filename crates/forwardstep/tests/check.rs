@@ -10,7 +10,7 @@ mod whose;
 use std::fs;
 
 use crate::support::{folder, forwardstep, stderr, stdout};
-use forwardstep::check::{Id, LinearisedSampling, SamplingMargin};
+use forwardstep::check::{Id, SamplingMargin, WholeLoop};
 use forwardstep::io::output::Deployment;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, shipped_scenario};
 use serde_json::Value;
@@ -160,8 +160,8 @@ fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
         // What is said of that very deployment there.
         let at = |share: f64| deployment.apply(&setup, share * found.period_s);
         if found.linearised {
-            let radius = |share: f64| LinearisedSampling::of(&at(share)).unwrap().radius;
-            assert!(radius(0.99) < 1.0 && radius(1.01) > 1.0, "{row:?}");
+            let grows = |share: f64| WholeLoop::of(&at(share)).unwrap().lasting_per_s().is_some();
+            assert!(!grows(0.99) && grows(1.01), "{row:?}");
         } else {
             let sigma = |share: f64| SamplingMargin::of(&at(share)).unwrap().worst.sigma;
             assert!((sigma(1.0) - 1.0).abs() < 1e-6 && sigma(0.8) < 1.0 && sigma(1.1) > 1.0, "{row:?}");
@@ -194,8 +194,8 @@ fn regress_ships_that_sample_too_slowly_for_their_way_are_not_called_adequate() 
 fn regress_short_periods_have_their_multipliers() {
     for hz in (600..680).chain([800, 1024, 5000, 20_000]) {
         let setup = open_scenario("theorem-7").unwrap().setup.sampled(f64::from(hz));
-        let found = LinearisedSampling::of(&setup).unwrap_or_else(|| panic!("{hz} Hz"));
-        assert!(found.leftmost > 0.99 && found.radius == 0.0, "{hz} Hz: {found:?}");
+        let found = WholeLoop::of(&setup).unwrap_or_else(|| panic!("{hz} Hz"));
+        assert!(found.start.leftmost.unwrap()[0] > 0.99 && found.lasting_per_s().is_none(), "{hz} Hz: {found:?}");
     }
 }
 

@@ -1,18 +1,22 @@
 //! Static torques against limits: what it takes to hold a posture at rest.
 //!
 //! Not from the paper, derived for this software. At rest τ = g(q) = Y(q, 0, 0, 0) ϑ with the true ϑ. Where |g_j(q)| exceeds its limit the
-//! posture cannot be held, whatever the controller does; where it does not, motion may still ask for more.
+//! posture cannot be held, whatever the controller does; where it does not, motion may still ask for more. A rotorcraft hovers by σ = m g, which four
+//! rotors have to give.
 
 use std::collections::HashMap;
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{Evaluator, Setup};
+use forwardstep_sim::{Evaluator, RotorcraftModel, Setup};
 
 use super::PracticalAnswer;
 use super::led::Led;
 use super::postures::each_posture;
 use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
+
+/// What the thrust of a rotorcraft is called, beside the names of axes.
+const THRUST: &str = "thrust";
 
 /// The axis that comes closest to its limit, or is farthest beyond it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +36,10 @@ pub struct StaticLoad {
 }
 
 impl StaticLoad {
-    /// Of the agents of a setup under (6)–(7), with states on their way; `None` where no limit is known.
+    /// Of the agents of a setup under (6)–(7), with states on their way, and of rotorcraft; `None` where no limit is known.
     pub(super) fn on(setup: &Setup, way: &[Led]) -> Option<StaticLoad> {
         let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| limits(setup, *agent).is_some()).collect();
-        let mut worst: Option<StaticLoad> = None;
+        let mut worst = hovering(setup);
         let (mut postures, mut evaluators) = (0, HashMap::new());
         let mut look = |agent: usize, q: &[f64]| {
             postures += 1;
@@ -44,7 +48,7 @@ impl StaticLoad {
                 evaluators.entry(agent).or_insert_with(|| robot.lagrangian().map(|robot| robot.evaluator()));
             let found = evaluator.as_mut().and_then(|evaluator| load(setup, agent, &mut **evaluator, q));
             worst = match (worst.take(), found) {
-                (Some(worst), Some(found)) => Some(if found.share() > worst.share() { found } else { worst }),
+                (Some(worst), Some(found)) => Some(worse(worst, found)),
                 (worst, found) => worst.or(found),
             };
         };
@@ -52,6 +56,11 @@ impl StaticLoad {
         // A way may lead where no start is.
         way.iter().filter(|led| those.contains(&led.agent)).for_each(|led| look(led.agent, &led.q));
         worst.map(|found| StaticLoad { postures, ..found })
+    }
+
+    /// Whether it is the thrust of a rotorcraft, whatever its posture.
+    pub(super) fn is_thrust(&self) -> bool {
+        self.axis_name == THRUST
     }
 
     /// |g_j(q)| as a part of the limit.
@@ -81,7 +90,22 @@ pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q
         limit,
         postures: 1,
     });
-    loads.reduce(|worst, load| if load.share() > worst.share() { load } else { worst })
+    loads.reduce(worse)
+}
+
+fn worse(one: StaticLoad, other: StaticLoad) -> StaticLoad {
+    if other.share() > one.share() { other } else { one }
+}
+
+/// The rotorcraft with the least thrust to spare.
+fn hovering(setup: &Setup) -> Option<StaticLoad> {
+    let load = |(index, agent): (usize, &forwardstep_sim::AgentSetup)| {
+        let model = agent.robot.kind.downcast::<RotorcraftModel>()?;
+        let [_, most] = model.rotors.as_ref()?.thrust;
+        let (agent, torque) = (Named::of(setup, index), agent.robot.theta.first()? * model.gravity);
+        Some(StaticLoad { agent, axis: 0, axis_name: THRUST.to_owned(), torque, limit: 4.0 * most, postures: 1 })
+    };
+    setup.agents.iter().enumerate().filter_map(load).reduce(worse)
 }
 
 /// The limits of the torques of an agent under (6)–(7), infinite where there is none; `None` where none is known.

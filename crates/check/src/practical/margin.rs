@@ -12,6 +12,7 @@ use super::led::{Led, way};
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping};
 use crate::hypothesis::Named;
+use crate::kinds::is_lagrangian;
 
 /// σ should not exceed this: the held damping then does not overshoot where commands act at once, and there is as much room for what
 /// is not in the model.
@@ -81,6 +82,11 @@ impl SamplingMargin {
     pub fn of(setup: &Setup) -> Option<SamplingMargin> {
         setup.control.as_ref()?;
         SamplingMargin::on(setup, &way(setup))
+    }
+
+    /// Whether it speaks of every agent: all are under (6)–(7).
+    pub fn is_of_all(setup: &Setup) -> bool {
+        setup.agents.iter().all(is_lagrangian)
     }
 
     /// The same with states on the way of the agents.

@@ -8,8 +8,7 @@
 //! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
 //! - `margin`: the sampling margin σ before a run.
 //! - `led`: states that references lead robots through, at which it looks.
-//! - `linearised`: the same for one agent of any other kind, by differences.
-//! - `looped`: agents under (6)–(7) with their references, and what neighbours tell.
+//! - `looped`: agents of any kind as a whole, with their references and what neighbours tell, by differences.
 //! - `loads`: static torques against limits.
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
@@ -24,7 +23,6 @@ mod gains;
 mod held;
 mod injected;
 mod led;
-mod linearised;
 mod loads;
 mod looped;
 mod margin;
@@ -44,9 +42,8 @@ pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
-pub use linearised::LinearisedSampling;
 pub use loads::StaticLoad;
-pub use looped::WholeLoop;
+pub use looped::{LoopAt, LoopRate, WholeLoop};
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
 pub(crate) use power::{is_fed, start_energy_j};
@@ -86,9 +83,7 @@ impl PracticalAnswer {
 pub enum Finding {
     /// How much of the longest useful period is used.
     SamplingMargin(SamplingMargin),
-    /// Whether the fast modes of agents outside (6)–(7) decay from sample to sample.
-    LinearisedSampling(LinearisedSampling),
-    /// Whether agents under (6)–(7) decay with all that is around s.
+    /// Whether agents decay with all that is around s, and those under other laws than (6)–(7) at all.
     WholeLoop(WholeLoop),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
@@ -103,7 +98,6 @@ impl Finding {
     pub fn name(&self) -> &'static str {
         match self {
             Finding::SamplingMargin(_) => "sampling-margin",
-            Finding::LinearisedSampling(_) => "linearised-sampling",
             Finding::WholeLoop(_) => "whole-loop",
             Finding::StaticLoad(_) => "static-load",
             Finding::TrackingPower(_) => "tracking-power",
@@ -115,7 +109,6 @@ impl Finding {
     pub fn answer(&self) -> PracticalAnswer {
         match self {
             Finding::SamplingMargin(margin) => margin.answer(),
-            Finding::LinearisedSampling(found) => found.answer(),
             Finding::WholeLoop(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
             Finding::TrackingPower(_) => PracticalAnswer::Bound,
@@ -141,14 +134,20 @@ impl Finding {
                 let some = [("longest_period_s", margin.longest_s), ("recommended_period_s", margin.recommended_s)];
                 always.into_iter().chain(some.into_iter().filter_map(|(name, value)| Some((name, value?)))).collect()
             }
-            Finding::LinearisedSampling(found) => {
-                vec![("radius", found.radius), ("leftmost", found.leftmost), ("period_s", found.period_s)]
-            }
             Finding::WholeLoop(found) => {
-                let [rate, ideal] = found.rate_per_s;
-                let mut all = vec![("rate_per_s", rate), ("ideal_rate_per_s", ideal), ("period_s", found.period_s)];
-                all.extend(found.network_rate_per_s.map(|[rate, _]| ("network_rate_per_s", rate)));
-                all.extend(found.passed_on.map(|[part, _]| ("passed_on", part)));
+                let (start, last) = (&found.start, found.last());
+                let mut all = vec![("period_s", found.period_s), ("start_rate_per_s", start.rate().per_s)];
+                all.push(("rate_per_s", last.alone.per_s));
+                all.extend(last.rate().ideal_per_s.map(|ideal| ("ideal_rate_per_s", ideal)));
+                all.extend(last.network.map(|network| ("network_rate_per_s", network.per_s)));
+                all.extend(last.passed_on.map(|[part, _]| ("passed_on", part)));
+                all.extend(start.leftmost.map(|[leftmost, _]| ("leftmost", leftmost)));
+                all.extend(
+                    last.decay_per_s
+                        .into_iter()
+                        .flat_map(|[own, ideal]| [("decay_per_s", own), ("ideal_decay_per_s", ideal)]),
+                );
+                all.extend(found.lasting_per_s().map(|rate| ("growth_per_s", rate)));
                 all
             }
             Finding::TrackingPower(bound) => vec![
@@ -194,14 +193,13 @@ pub fn practical(setup: &Setup) -> Practical {
     let way = if limited || setup.control.is_some() { way(setup) } else { Vec::new() };
     let margin = SamplingMargin::on(setup, &way);
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
-    let whole = WholeLoop::of(setup);
-    // What grows has no bound.
-    let grows = whole.as_ref().is_some_and(|whole| whole.answer() == PracticalAnswer::Inadequate);
+    let whole = WholeLoop::on(setup, &way);
+    // What may grow has no bound.
+    let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown);
     let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);
-    let linearised = LinearisedSampling::of(setup).map(Finding::LinearisedSampling);
     let whole = whole.map(Finding::WholeLoop);
-    Practical { findings: [margin, linearised, whole, load, power, agreement].into_iter().flatten().collect() }
+    Practical { findings: [margin, whole, load, power, agreement].into_iter().flatten().collect() }
 }

@@ -1,8 +1,8 @@
 //! Sentences of practical verdicts.
 
 use super::{
-    AgreementBound, AxisBound, Finding, LinearisedSampling, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN,
-    ReferenceGains, SamplingMargin, StaticLoad, WholeLoop,
+    AgreementBound, AxisBound, Finding, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains,
+    SamplingMargin, StaticLoad, WholeLoop,
 };
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
@@ -10,9 +10,8 @@ use crate::hypothesis::numbers::{rounded, rounded_up};
 pub(super) fn about(finding: &Finding) -> &'static str {
     match finding {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
-        Finding::LinearisedSampling(_) => "agents under other laws sample fast enough",
-        Finding::WholeLoop(_) => "agents decay with their references and what they hear",
-        Finding::StaticLoad(_) => "torques within their limits hold the robots at rest",
+        Finding::WholeLoop(_) => "the loop as a whole decays from sample to sample",
+        Finding::StaticLoad(_) => "torques and thrusts within their limits hold the robots at rest",
         Finding::TrackingPower(_) => "how large s stays",
         Finding::TrackingDisagreement(_) => "what s adds to the disagreement",
     }
@@ -22,7 +21,6 @@ pub(super) fn about(finding: &Finding) -> &'static str {
 pub(super) fn because(finding: &Finding) -> String {
     match finding {
         Finding::SamplingMargin(margin) => sampling(margin),
-        Finding::LinearisedSampling(found) => linearised(found),
         Finding::WholeLoop(found) => whole(found),
         Finding::StaticLoad(load) => standing(load),
         Finding::TrackingPower(bound) => power(bound),
@@ -73,8 +71,12 @@ fn too_slow(SamplingMargin { start, worst, .. }: &SamplingMargin) -> &'static st
     }
 }
 
-fn standing(StaticLoad { agent, axis_name, torque, limit, postures, .. }: &StaticLoad) -> String {
+fn standing(load: &StaticLoad) -> String {
+    let StaticLoad { agent, axis_name, torque, limit, postures, .. } = load;
     let (torque, limit) = (rounded(*torque), rounded(*limit));
+    if load.is_thrust() {
+        return format!("{} hovers with m g = {torque} N of the {limit} N that its rotors give", agent.name);
+    }
     let those = if *postures == 1 {
         "at the start".into()
     } else {
@@ -173,36 +175,65 @@ fn worst_of(agents: usize, all: usize) -> String {
     }
 }
 
-fn linearised(found: &LinearisedSampling) -> String {
-    let LinearisedSampling { agent, period_s, radius, leftmost, agents, of: all } = found;
-    let (leftmost, period) = (rounded(*leftmost), rounded(1e3 * period_s));
-    let of = worst_of(*agents, *all);
-    let meaning = match found.answer() {
-        PracticalAnswer::Inadequate => format!("a fast mode grows by {} from sample to sample", rounded(*radius)),
-        PracticalAnswer::Marginal => format!("a fast mode overshoots: its multiplier has the real part {leftmost}"),
-        PracticalAnswer::Bound | PracticalAnswer::Adequate | PracticalAnswer::NotShown => {
-            format!("no mode overshoots: no multiplier has a real part below {leftmost}")
-        }
-    };
-    format!("linearised at the start ({}{of}), with a period of {period} ms: {meaning}", agent.name)
-}
-
 fn whole(found: &WholeLoop) -> String {
-    let WholeLoop { agent, period_s, agents, of: all, .. } = found;
-    let of = worst_of(*agents, *all);
-    let meaning = match (found.growth_per_s(), found.amplified()) {
-        (Some(rate), _) => {
-            let (rate, ideal) = (rounded(rate), "where velocities were measured and samples fast, it would not");
-            format!("a mode grows at {rate}/s; {ideal}: sample faster, filter less, or let the roots be slower")
+    let WholeLoop { start, led, period_s, agents, of: all, .. } = found;
+    let last = found.last();
+    let (of, name) = (worst_of(*agents, *all), &last.agent.name);
+    let whose = match last.network {
+        Some(_) => format!("all {all} agents together"),
+        None => format!("{name}{of}"),
+    };
+    let places = match &led[..] {
+        [] => "at the start".to_owned(),
+        [last] => format!("at the start and where it leads by {} s", rounded(last.t_s)),
+        led => format!("at the start and at {} states on the way", led.len()),
+    };
+    let advice = match last.rate().ideal_per_s.or(start.rate().ideal_per_s) {
+        Some(_) => {
+            "where velocities were measured and samples fast, it would not: sample faster, filter less, or let the roots be slower"
         }
-        (None, Some(part)) => format!(
+        None => "sample faster, filter less, or let the roots be slower",
+    };
+    let meaning = match (found.lasting_per_s(), found.start_per_s(), found.amplified()) {
+        (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
+            format!("a mode grows at {}/s; {advice}", rounded(rate))
+        }
+        (_, _, Some(part)) => format!(
             "what is heard is passed on up to {} times as large, so that in some network with such weights a mode may grow: sample \
              faster, filter less, or let roots and weights be smaller",
             rounded(part)
         ),
-        (None, None) => "no mode grows that would not in continuous time".to_owned(),
+        (Some(rate), _, None) => {
+            format!("a mode grows at {}/s, which is too slow to be seen until the end; {advice}", rounded(rate))
+        }
+        (None, Some(rate), None) => format!(
+            "a mode grows at {}/s at the start ({}), but not where that leads; {advice}",
+            rounded(rate),
+            start.agent.name
+        ),
+        (None, None, None) => settled(found, advice),
     };
-    format!("linearised at the start ({}{of}), with a period of {} ms: {meaning}", agent.name, rounded(1e3 * period_s))
+    format!("linearised {places} ({whose}), with a period of {} ms: {meaning}", rounded(1e3 * period_s))
+}
+
+/// Of a loop in which no mode grows while estimates are right.
+fn settled(found: &WholeLoop, advice: &str) -> String {
+    match (found.astray_per_s(), found.start.overshoot(), found.start.slowed_per_s()) {
+        (Some(rate), _, _) => format!(
+            "while estimates are right no mode grows; once they are at their upper bounds, or without bounds as they start, one \
+             does at {}/s; {advice}",
+            rounded(rate)
+        ),
+        (None, Some(leftmost), _) => {
+            format!("a fast mode overshoots: its multiplier has the real part {}; sample faster", rounded(leftmost))
+        }
+        (None, None, Some([own, ideal])) => format!(
+            "the slowest mode decays at {}/s, in continuous time at {}/s; sample faster",
+            rounded(own),
+            rounded(ideal)
+        ),
+        (None, None, None) => "no mode grows that would not in continuous time".to_owned(),
+    }
 }
 
 /// What else there is between a sample and its torque.

@@ -219,11 +219,7 @@ fn thm_the_worst_pushes_move_the_posture_as_fast_as_is_said_and_none_faster() {
 fn bound(setup: &Setup) -> Option<AgreementBound> {
     practical(setup).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingDisagreement(bound) => Some(bound),
-        Finding::SamplingMargin(_)
-        | Finding::LinearisedSampling(_)
-        | Finding::WholeLoop(_)
-        | Finding::StaticLoad(_)
-        | Finding::TrackingPower(_) => None,
+        Finding::SamplingMargin(_) | Finding::WholeLoop(_) | Finding::StaticLoad(_) | Finding::TrackingPower(_) => None,
     })
 }
 
@@ -316,7 +312,6 @@ fn what_s_adds_is_said_with_its_numbers() {
     let power_w = practical(&uneven).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingPower(power) => Some(power.mean_w),
         Finding::SamplingMargin(_)
-        | Finding::LinearisedSampling(_)
         | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
         | Finding::TrackingDisagreement(_) => None,

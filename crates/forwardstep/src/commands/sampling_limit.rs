@@ -98,7 +98,10 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
             format!("  rule       {} ms: the sampling margin σ is 1 before the run", ms(Some(period_s)))
         }
         Some(Rule { period_s, linearised: true }) => {
-            format!("  rule       {} ms: linearised at the start, a fast mode stops to decay", ms(Some(period_s)))
+            format!(
+                "  rule       {} ms: linearised, a mode of the loop as a whole grows from there on",
+                ms(Some(period_s))
+            )
         }
     });
     let bounded =

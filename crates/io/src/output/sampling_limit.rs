@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_check::{Hold, LinearisedSampling, SamplingMargin};
+use forwardstep_check::{Hold, SamplingMargin, WholeLoop};
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::{Control, Setup, SetupError, VelocitySensor, simulate};
 
@@ -40,7 +40,7 @@ pub struct Deployment {
 pub struct Rule {
     /// It, s.
     pub period_s: f64,
-    /// A fast mode of an agent outside (6)–(7), linearised at its start, stops to decay there; else the sampling margin is 1.
+    /// A mode of the loop as a whole grows from there on; else the sampling margin is 1.
     pub linearised: bool,
 }
 
@@ -107,7 +107,11 @@ impl Deployment {
         let period_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
         let hold = |period_s: f64| self.apply(setup, period_s).control.as_ref().map_or(Hold::IDEAL, Hold::of);
         let margin_s = SamplingMargin::longest_period_s(setup, period_s, hold);
-        let linearised_s = LinearisedSampling::longest_period_s(period_s, |period_s| self.apply(setup, period_s));
+        let linearised_s = if SamplingMargin::is_of_all(setup) {
+            None
+        } else {
+            WholeLoop::longest_period_s(period_s, |period_s| self.apply(setup, period_s))
+        };
         let margin = margin_s.map(|period_s| Rule { period_s, linearised: false });
         let linearised = linearised_s.map(|period_s| Rule { period_s, linearised: true });
         let both = margin.into_iter().chain(linearised).filter(|rule| rule.period_s.is_finite());

@@ -22,20 +22,13 @@ const STEPS: u32 = 24;
 /// How far a state is moved to both sides, relative to its size.
 const APART: f64 = 1e-6;
 
-/// How the state at a sample depends on that at the sample before.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SampledJacobian {
-    /// Numbers of state.
-    pub size: usize,
-    /// Row by row.
-    pub entries: Vec<f64>,
-}
-
-/// The same of an agent in its network, and how what it tells and what it hears enter.
+/// One period of an agent in its network, as matrices, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledLoop {
-    /// Of an agent whose neighbours stay where they are.
-    pub own: SampledJacobian,
+    /// Numbers of state.
+    pub size: usize,
+    /// How the state at a sample depends on that at the sample before, of an agent whose neighbours stay where they are.
+    pub own: Vec<f64>,
     /// Numbers in a message.
     pub message: usize,
     /// How its message depends on its state: `message` rows.
@@ -44,29 +37,13 @@ pub struct SampledLoop {
     pub hears: [Vec<f64>; 2],
 }
 
-/// The Jacobian of one period of agent `index` of `setup`, at its start; `None` when control is continuous, where velocities are
-/// filtered differences, whose memory is not part of the state, and where something is not finite.
+/// One period of agent `index` of `setup`, where it hears others with weights that sum to `degree` and that agree with it as it starts: at its
+/// start, or after so many periods by itself. Behind the state of plant and controller stand what a filter gives for the velocities, where
+/// they are filtered, and the command before, where it comes late. `None` when control is continuous, and where something is not finite.
 ///
 /// # Errors
 /// [`SetupError`] when the law cannot build the agent.
-pub fn sampled_jacobian(setup: &Setup, index: usize) -> Result<Option<SampledJacobian>, SetupError> {
-    match setup.control.as_ref().map(|control| control.sensors.velocity) {
-        Some(VelocitySensor::Measured) => Ok(linearised(setup, index, 0.0)?.map(|found| found.own)),
-        Some(VelocitySensor::Filtered { .. }) | None => Ok(None),
-    }
-}
-
-/// One period of agent `index` of `setup`, at its start, where it hears others with weights that sum to `degree` and agrees with them. Behind
-/// the state of plant and controller stand what a filter gives for the velocities, where they are filtered, and the command before, where
-/// it comes late. `None` when control is continuous, and where something is not finite.
-///
-/// # Errors
-/// [`SetupError`] when the law cannot build the agent.
-pub fn sampled_loop(setup: &Setup, index: usize, degree: f64) -> Result<Option<SampledLoop>, SetupError> {
-    linearised(setup, index, degree)
-}
-
-fn linearised(setup: &Setup, index: usize, degree: f64) -> Result<Option<SampledLoop>, SetupError> {
+pub fn sampled_loop(setup: &Setup, index: usize, degree: f64, after: u32) -> Result<Option<SampledLoop>, SetupError> {
     let (Some(control), Some(own)) = (&setup.control, setup.agents.get(index)) else { return Ok(None) };
     let quick = match control.sensors.velocity {
         VelocitySensor::Measured => None,
@@ -97,7 +74,8 @@ fn linearised(setup: &Setup, index: usize, degree: f64) -> Result<Option<Sampled
     let heard = [(); 2].map(|()| vec![0.0; message_len(&alone)]);
     let moving = |k: &usize| block.0.locate(*k).1 == Signal::Velocity;
     let filtered = if quick.is_some() { (0..block.0.state_len()).filter(moving).collect() } else { Vec::new() };
-    Period { columns: block.0, setup: &alone, control: exact, degree, heard, quick, filtered }.linearised()
+    Period { columns: block.0, setup: &alone, control: exact, degree, heard, quick, filtered, begin_s: 0.0 }
+        .linearised(after)
 }
 
 /// What makes a period pass.
@@ -113,6 +91,8 @@ struct Period<'a> {
     quick: Option<f64>,
     /// The velocities in the state that a filter stands for.
     filtered: Vec<usize>,
+    /// When it begins.
+    begin_s: f64,
 }
 
 /// What a period brings.
@@ -124,7 +104,7 @@ struct Passed {
 }
 
 impl Period<'_> {
-    fn linearised(mut self) -> Result<Option<SampledLoop>, SetupError> {
+    fn linearised(mut self, after: u32) -> Result<Option<SampledLoop>, SetupError> {
         let mut x = Vec::new();
         self.columns.append_start(&self.setup.agents, &mut x);
         let agent = &self.setup.agents[0].name;
@@ -141,8 +121,15 @@ impl Period<'_> {
             let Passed { state, .. } = self.pass(&x, false)?;
             x.extend(state.get(x.len()..).unwrap_or_default().to_vec());
         }
+        for _ in 0..after {
+            x = self.pass(&x, is_late)?.state;
+            if x.iter().any(|x| !x.is_finite()) {
+                return Ok(None);
+            }
+            self.begin_s += 1.0 / self.control.sample_hz;
+        }
         let (n, m) = (x.len(), told.len());
-        let [mut entries, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];
+        let [mut own, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];
         let mut hears = [vec![0.0; n * m], vec![0.0; n * m]];
         for column in 0..n {
             let apart = APART * (1.0 + x[column].abs());
@@ -154,7 +141,7 @@ impl Period<'_> {
             let (above, below) = (moved(apart)?, moved(-apart)?);
             let slope = |(above, below): (&f64, &f64)| (above - below) / (2.0 * apart);
             for (row, pair) in above.state.iter().zip(&below.state).enumerate() {
-                entries[row * n + column] = slope(pair);
+                own[row * n + column] = slope(pair);
             }
             for (row, pair) in above.told.iter().zip(&below.told).enumerate() {
                 tells[row * n + column] = slope(pair);
@@ -176,9 +163,9 @@ impl Period<'_> {
                 }
             }
         }
-        let all = || entries.iter().chain(&tells).chain(hears.iter().flatten());
+        let all = || own.iter().chain(&tells).chain(hears.iter().flatten());
         let is_finite = all().all(|entry| entry.is_finite());
-        Ok(is_finite.then_some(SampledLoop { own: SampledJacobian { size: n, entries }, message: m, tells, hears }))
+        Ok(is_finite.then_some(SampledLoop { size: n, own, message: m, tells, hears }))
     }
 
     /// The state a period after `x`, and what is told at its beginning. Where commands are late, `x` ends with what the actuators held
@@ -195,16 +182,16 @@ impl Period<'_> {
         let controllers: Result<Vec<_>, _> = recipes.iter().map(|(_, recipe)| built(recipe, agent)).collect();
         self.columns.sample(&self.control, controllers?);
         let mut told = self.heard[0].clone();
-        self.take(0.0, &mut x, &filter, 0, &mut told);
+        self.take(self.begin_s, &mut x, &filter, 0, &mut told);
         let mut command = Vec::new();
         self.columns.taken(&mut |digital| command.extend_from_slice(digital.taken(0, 0.0).command));
         let begun = self.positions(&x);
         if is_late {
             self.columns.hold(before);
-            self.flow(&mut x, [0.0, late_s]);
+            self.flow(&mut x, [self.begin_s, self.begin_s + late_s]);
         }
         self.columns.apply();
-        self.flow(&mut x, [if is_late { late_s } else { 0.0 }, period_s]);
+        self.flow(&mut x, [self.begin_s + if is_late { late_s } else { 0.0 }, self.begin_s + period_s]);
         if let Some(quick) = self.quick {
             let ended = self.positions(&x);
             for (f, (end, begin)) in filter.iter_mut().zip(ended.iter().zip(&begun)) {
@@ -212,7 +199,7 @@ impl Period<'_> {
             }
         }
         let mut ignored = told.clone();
-        self.take(period_s, &mut x, &filter, 1, &mut ignored);
+        self.take(self.begin_s + period_s, &mut x, &filter, 1, &mut ignored);
         x.extend(filter);
         if self.control.computation_delay_s > 0.0 {
             x.extend(command);
