@@ -67,6 +67,60 @@ def clock(browser, name, runs):
     browser.point(1, 1)
 
 
+def by_hand(browser, name):
+    """Space plays and arrows move time with nothing in focus; buttons zoom pictures and plots."""
+    browser.run("document.activeElement.blur(); document.getElementById('side').go(0)")
+    plays(browser, f"{name}, nothing in focus", "side")
+    before = value(browser, "s.time()")
+    browser.press("ArrowRight")
+    drawn(browser)
+    expect(value(browser, "s.time()") > before, f"{name}: with nothing in focus an arrow moves no clock")
+    pictures = "[...document.querySelectorAll('.scene canvas')].map((c) => c.toDataURL())"
+    seen = value(browser, pictures)
+    browser.run("document.querySelector('.clock .zoom:last-of-type').click()")
+    drawn(browser)
+    expect(all(a != b for a, b in zip(seen, value(browser, pictures))), f"{name}: the button + does not zoom all pictures")
+    browser.run("document.querySelector('.tools .zoom:last-of-type').click()")
+    expect(not value(browser, "document.getElementById('reset').disabled"), f"{name}: the button + zooms no plot")
+    browser.run("document.getElementById('reset').click()")
+
+
+def ended(browser, name, document):
+    """Below a picture of a run that is over stands until when it was recorded; when it ended the table says."""
+    end = float(value(browser, 'document.getElementById("slider").max'))
+    browser.run('document.getElementById("side").go(arguments[0])', end)
+    drawn(browser)
+    row = next(row for row in document["rows"] if row["key"] == "horizon_s")
+    said = value(browser, "[...document.querySelectorAll('.scene .words')].map((e) => e.textContent)")
+    horizons = [cell["value"] for cell in row["cells"]] if not row["same"] else [end] * len(said)
+    for words, horizon in zip(said, horizons):
+        expect(words.startswith("Recorded until") == (horizon < end), f"{name}: of a run to {horizon} of {end} s it says {words}")
+
+
+BROKEN = """
+const texts = (part) => [...part.childNodes].flatMap((node) => (node.nodeType === Node.TEXT_NODE ? [node] : texts(node)));
+const broken = [];
+for (const text of [...document.querySelectorAll(".compared tbody th, .compared td")].flatMap(texts)) {
+  for (const word of text.data.matchAll(/[\\p{L}\\p{N}]+/gu)) {
+    const range = document.createRange();
+    range.setStart(text, word.index);
+    range.setEnd(text, word.index + word[0].length);
+    if (new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size > 1) broken.push(word[0]);
+  }
+}
+return broken;
+"""
+
+
+def unbroken(browser, name):
+    """No word of the table is broken, on the page or on a sheet."""
+    for event in [None, "beforeprint", "afterprint"]:
+        browser.run("arguments[0] && dispatchEvent(new Event(arguments[0]))", event)
+        drawn(browser)
+        broken = browser.run(BROKEN)
+        expect(not broken, f"{name}{f' {event}' if event else ''}: broken in the table: {broken[:5]}")
+
+
 def check(browser, folder):
     def compare(name, *runs):
         answer = subprocess.run([folder.program, "compare", "--json", *runs, "--out", folder / name], capture_output=True, text=True, check=False)
@@ -80,7 +134,7 @@ def check(browser, folder):
     lines = folder.scenario("double-integrators").splitlines()
     hostile.write_text("\n".join(f"title = {json.dumps(HOSTILE)}" if line.startswith("title") else line for line in lines) + "\n")
     ships = [SHIPS / f"{name}.toml" for name in ["backstepping", "order-1", "order-2", "order-3"]]
-    for name, runs in [("ships", ships), ("arms", ["six-arms", "theorem-2"]), ("kinds", ["theorem-7", "theorem-8"]), ("hostile", [hostile, "strict-feedback"])]:
+    for name, runs in [("ships", ships), ("arms", ["six-arms", "theorem-2"]), ("kinds", ["theorem-7", "theorem-8", "theorem-2", "five-ships", "formation"]), ("hostile", [hostile, "strict-feedback"])]:
         page, document = compare(name, *runs)
         for dark in [False, True]:
             browser.screen(1400, 900, dark=dark)
@@ -90,11 +144,15 @@ def check(browser, folder):
             if not dark:
                 table(browser, about, document)
                 clock(browser, about, len(runs))
+                by_hand(browser, about)
+                ended(browser, about, document)
+                unbroken(browser, about)
             quiet(browser, about, 1400)
         browser.screen(390, 844, touch=True, calm=True)
         browser.open(page)
         expect(all(pixels > 200 for pixels in painted(browser)), f"{name} on a phone: an empty picture")
         quiet(browser, f"{name} on a phone", 390)
+        unbroken(browser, f"{name} on a phone")
         stays = value(browser, "getComputedStyle(document.querySelector('.compared th[scope=row]')).position")
         expect(stays == "sticky", f"{name} on a phone: names of rows leave when the table is moved")
         done(f"{name}: {len(runs)} runs side by side")

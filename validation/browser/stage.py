@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds what pages draw beside what runs recorded: tips, shapes, packets; then what is known and what is not, layout, and films.
+"""Holds what pages draw beside what runs recorded: tips, shapes, packets; then what is known and what is not, layout, what readers do, and films.
 
     validation/browser/stage.py target/release/forwardstep
 """
@@ -12,6 +12,7 @@ import struct
 import tarfile
 
 import checks
+import hands
 import known
 import layout
 from checks import TOLERANCE_M, done, expect, quiet, settled, value, waited
@@ -140,6 +141,7 @@ def check(browser, folder):
         quiet(browser, f"shaped{query}", 1400)
     known.all_of(browser, folder)
     layout.all_of(browser, folder)
+    hands.all_of(browser, folder)
     page = folder.run("from-a-log")
     browser.open(page)
     flights(browser, "from-a-log", page)

@@ -137,8 +137,13 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
   for (let k = words.length - 1, most = top + tall; k >= 0; k--, most -= apart) words[k].y = Math.min(words[k].y, most);
   pen.font = WORDS;
   const widest = Math.max(0, ...words.map(({ text }) => pen.measureText(text).width));
+  let unnamed = 0;
   for (const { x, y, text, dot } of words) {
     if (x < see.box.left - 1 || x > see.width) continue;
+    if (y < 8) {
+      unnamed += 1;
+      continue;
+    }
     const before = x + widest + 25 > see.width;
     Object.assign(pen, { textAlign: before ? "right" : "left", textBaseline: "middle", lineJoin: "round", lineWidth: 3.5, strokeStyle: colours.surface, fillStyle: colours.ink });
     for (const how of ["strokeText", "fillText"]) pen[how](text, x + (before ? -21 : 21), y);
@@ -148,4 +153,5 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
     pen.fill();
   }
   Object.assign(pen, { textAlign: "left", textBaseline: "alphabetic" });
+  return unnamed;
 };

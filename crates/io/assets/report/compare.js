@@ -106,6 +106,11 @@ const chips = runs.map((run) => {
 legend.append(...chips);
 document.getElementById("reset").onclick = () => zoomTo(null);
 
+// Names of keys break between their words.
+const breakable = (text) => text.replace(/([a-z0-9][._])(?=[a-z])/gi, "$1\n").split("\n").flatMap((part, k) => (k ? [element("wbr"), part] : [part]));
+const textsIn = (part) => [...part.childNodes].flatMap((node) => (node.nodeType === Node.TEXT_NODE ? [node] : textsIn(node)));
+for (const text of textsIn(document.querySelector(".compared"))) text.replaceWith(element("span", {}, ...breakable(text.data)));
+
 // Pictures, projected, and the clock of all.
 const side = (() => {
   const part = (id) => document.getElementById(id);
@@ -115,7 +120,6 @@ const side = (() => {
   const now = { t: 0, playing: false, since: 0 };
   let asked = 0;
   slider.max = String(end);
-  slider.step = String(end / 2000 || "any");
   slider.disabled = play.disabled = end === 0;
   // What is measured where bodies stand, as the page of one run says it.
   const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd());
@@ -144,11 +148,12 @@ const side = (() => {
     picture.drawTrails(ctx, see, frame, colours, nothing, null);
     picture.drawMarks(ctx, see, frame, colours, null);
     picture.drawEdges(ctx, see, frame, colours, heard);
-    picture.drawWords(ctx, see, frame, colours, { hovered: null, alone: null });
-    const over = now.t > run.until_s ? `Ended at ${number(run.until_s, 4)} s. ` : "";
+    const unnamed = picture.drawWords(ctx, see, frame, colours, { hovered: null, alone: null });
+    // A run that broke down may have ended after its last row.
+    const over = now.t > run.until_s ? `Recorded until ${number(run.until_s, 4)} s. ` : "";
     const size = picture.charted ? "Positions over time. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
-    const lost = picture.lostWords(frame);
-    const text = `${over}${size}${lost && `${lost[0].toUpperCase()}${lost.slice(1)}. `}${picture.graphWords(heard)}`;
+    const more = [unnamed > 0 && unnamedWords(unnamed), marksOf(picture.bodies).join("; "), picture.lostWords(frame)].filter(Boolean).map((words) => `${words[0].toUpperCase()}${words.slice(1)}. `);
+    const text = `${over}${size}${more.join("")}${picture.graphWords(heard)}`;
     if (words.textContent !== text) words.textContent = text;
     canvas.setAttribute("aria-label", `${run.name} at ${number(t, 4)} s: ${picture.bodies.length} in space`);
   };
@@ -189,7 +194,7 @@ const side = (() => {
     later();
   };
   play.onclick = () => setPlaying(!now.playing);
-  slider.oninput = () => (setPlaying(false), go(Number(slider.value)));
+  slider.oninput = () => (setPlaying(false), go(slidTo(slider, end)));
   fitRates(rate, end);
 
   const zoom = (by) => (runs.forEach(({ picture: { camera } }) => (camera.zoom = Math.min(30, Math.max(0.3, camera.zoom * by)))), ask());
@@ -201,11 +206,7 @@ const side = (() => {
     ask();
   };
   scenes.addEventListener("keydown", (event) => {
-    const fine = event.shiftKey ? 10 : 1;
     const does = {
-      " ": () => setPlaying(!now.playing),
-      ArrowRight: () => go(now.t + (fine * end) / 200), ArrowLeft: () => go(now.t - (fine * end) / 200),
-      Home: () => go(0), End: () => go(end),
       a: () => turn(-6, 0), d: () => turn(6, 0), w: () => turn(0, 6), s: () => turn(0, -6),
       "+": () => zoom(1.2), "=": () => zoom(1.2), "-": () => zoom(1 / 1.2),
     }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -213,11 +214,10 @@ const side = (() => {
     event.preventDefault();
     does();
   });
-  slider.addEventListener("keydown", (event) => {
-    if (event.key !== " ") return;
-    event.preventDefault();
-    setPlaying(!now.playing);
-  });
+  clockKeys({ end, now, go, toggle: () => setPlaying(!now.playing) }, ".scenes");
+  part("view-help").before(element("span", { className: "zooms" }, "pictures", ...zoomButtons("all pictures", zoom)));
+  part("reset").before(element("span", { className: "zooms" }, "plots", ...zoomButtons("all plots, at the clock", (by) => zoomAbout(now.t, by))));
+  part("view-help").textContent = "Space plays and pauses, and ← and → move in time, with Shift faster, wherever nothing has the focus that uses these keys. With the pictures or the slider in focus, Home and End go to the start and the end. Drag or W, A, S, D turn all pictures, + and − zoom. Plots follow the same clock.";
   for (const { canvas } of views) {
     let held = null;
     canvas.addEventListener("pointerdown", (event) => {

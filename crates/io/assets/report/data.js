@@ -92,6 +92,17 @@ const number = (v, digits = 4) => {
 const timePlaces = (end) => (end > 0 ? Math.max(0, Math.min(12, 4 - Math.ceil(Math.log10(end)))) : 0);
 const timeOf = (t, end) => `t = ${t.toFixed(timePlaces(end))} s of ${number(end, 6)} s`;
 
+const unnamedWords = (count) => `and ${count} more without room for ${count === 1 ? "its name" : "their names"}`;
+// What marks in a picture mean, of those that it has.
+const marksOf = (bodies) => {
+  const crafts = bodies.filter((b) => b.kind === "spacecraft");
+  const spun = crafts.filter((b) => b.wheel_axes.length > 0);
+  const spins = spun.some((b) => b.wheels.length > 0);
+  const pushed = bodies.some((b) => b.kind === "vehicle" && b.attitude.length === 4 && b.thrust !== null);
+  const words = [crafts.some((b) => b.target.length === 4) && "dashed: axes of the target", spun.length > 0 && "circles: reaction wheels", spins && "arrows: their momenta", pushed && "straight arrows: thrust"];
+  return words.filter(Boolean);
+};
+
 // The label of a tick when neighbours are `step` apart.
 const tick = (v, step) => {
   const size = Math.max(Math.abs(v), step);

@@ -56,6 +56,9 @@ const tableOf = (plot) => {
 // Tables that are open say what is drawn.
 const refreshTables = () => document.querySelectorAll(".exports details[open]").forEach((table) => table.dispatchEvent(new Event("toggle")));
 
+// The first of the words of a heading.
+const headingOf = (heading) => heading?.firstChild?.textContent.trim() ?? "";
+
 // The parts of a heading, each told apart from the next.
 const titleOf = (card) => {
   const heading = card.querySelector("h3");

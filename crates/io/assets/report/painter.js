@@ -243,7 +243,7 @@ const drawMarks = (ctx, see, frame, colours, hovered) => {
 };
 
 const WORDS = '12px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
-// Names beside what they name, none over another; of many agents only those that are pointed at, chosen, or lead.
+// Names beside what they name, none over another; of many agents only those that are pointed at, chosen, or lead. Returns how many have no room.
 const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
   if (charted) return drawChartWords(ctx, see, frame, colours, { hovered, alone });
   const taken = [];
@@ -259,8 +259,9 @@ const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
       ctx.strokeText(text, left, y + dy + 11);
       ctx.fillStyle = fill;
       ctx.fillText(text, left, y + dy + 11);
-      return;
+      return true;
     }
+    return false;
   };
   ctx.font = WORDS;
   ctx.textAlign = "left";
@@ -269,14 +270,17 @@ const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
   const named = bodies.length <= 24;
   const short = (name) => (name.length > 24 ? `${name.slice(0, 23)}…` : name);
   const order = [...frame.nodes].sort((a, b) => (b.body.leads || b.body.vertex === hovered) - (a.body.leads || a.body.vertex === hovered));
+  let unnamed = 0;
   for (const { body, label } of order) {
     const picked = body.vertex === hovered || body.vertex === alone || body.leads;
     if (!named && !picked) continue;
     const s = see.project(label);
     if (!s) continue;
     const text = leading(short(body.name), body.leads);
-    if (layout.rails.has(body)) write(text, s.x - 6 - ctx.measureText(text).width / 2, s.y - 6, colours.soft, picked);
-    else write(text, s.x, s.y + (body.kind === "arm" ? 8 : 10), picked ? colours.ink : colours.soft, true);
+    const isWritten = layout.rails.has(body)
+      ? write(text, s.x - 6 - ctx.measureText(text).width / 2, s.y - 6, colours.soft, picked)
+      : write(text, s.x, s.y + (body.kind === "arm" ? 8 : 10), picked ? colours.ink : colours.soft, true);
+    if (!isWritten) unnamed += 1;
   }
   for (const { at, text } of frame.words) {
     const s = see.project(at);
@@ -290,4 +294,5 @@ const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
       if (s) write(`${number(value, 3)}${of ? ` ${of}` : ""}`, s.x, s.y + 6, colours.muted, true);
     }
   }
+  return unnamed;
 };

@@ -285,7 +285,8 @@ const drawPaths = (target, height) => {
     redraw,
     setScale: redraw,
     setSeries: () => {},
-    setSize: ({ width }) => ((size.width = Math.max(120, width)), redraw()),
+    // Out of sight too: a canvas that keeps the width of a larger window keeps the page as wide.
+    setSize: ({ width }) => ((size.width = Math.max(120, width)), redraw(), prepared(1)),
     destroy: () => (watcher.disconnect(), frame.remove()),
   };
   redraw();

@@ -8,7 +8,7 @@ const quantities = (() => {
   const perAxis = (columns, leader, name, unit) =>
     joints.map((j) => ({ name: name(/^\d+$/.test(j.name) ? `axis ${j.name}` : j.name), unit: unitOf(j.axis, unit), of: agents.map((_, i) => columns[i]?.[j.axis]), wanted: [], leader: leader?.[j.axis] }));
   const headings = index.families.map(({ id }) => document.querySelector(`[data-plot="${id}"] h3`));
-  const titles = headings.map((heading, k) => heading?.firstChild?.textContent ?? index.families[k].id);
+  const titles = headings.map((heading, k) => headingOf(heading) || index.families[k].id);
   const families = index.families.flatMap(({ id, entries }, k) => {
     // Cards of one title tell themselves apart by their letters.
     const letters = titles.filter((title) => title === titles[k]).length > 1 ? ` ${headings[k]?.querySelector(".by")?.textContent ?? ""}` : "";
@@ -222,7 +222,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     redraw,
     setScale: redraw,
     setSeries: () => {},
-    setSize: ({ width }) => ((size.width = Math.max(120, width)), redraw()),
+    setSize: ({ width }) => ((size.width = Math.max(120, width)), redraw(), prepared(1)),
     destroy: () => frame.remove(),
   };
   redraw();

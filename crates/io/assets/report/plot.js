@@ -12,6 +12,24 @@ const zoomTo = (range) => {
   const [min, max] = axisOf(range ?? whole);
   for (const plot of plots) plot.setScale("x", { min, max });
 };
+// Closer to a time, or less close: it stays where it is in all plots, and comes to their middle if it was out of sight.
+const zoomAbout = (t, by) => {
+  const [from, to] = view.zoom ?? whole;
+  const length = Math.max((to - from) / by, 1e-5 * whole[1]);
+  if (length >= whole[1]) return zoomTo(null);
+  const share = t >= from && t <= to ? (t - from) / (to - from) : 0.5;
+  const begin = Math.min(whole[1] - length, Math.max(whole[0], t - share * length));
+  zoomTo([begin, begin + length]);
+};
+// Buttons for whoever has no mouse.
+const zoomButtons = (what, zoom) =>
+  [["−", "Zoom out", 1 / 1.5], ["+", "Zoom in", 1.5]].map(([textContent, how, by]) => {
+    const title = `${how}: ${what}`;
+    const button = element("button", { type: "button", className: "zoom", textContent, title, onclick: () => zoom(by) });
+    button.setAttribute("aria-label", title);
+    return button;
+  });
+
 // Times on an axis; of one instant nothing but that.
 const timeTick = (t, step) => (whole[1] > 0 || t === 0 ? `${tick(t, step)} s` : "");
 
@@ -178,6 +196,33 @@ const fitRates = (rate, end) => {
   const least = suits < 0.1 ? 0 : 1;
   rate.value = all.find((r) => Number(r) >= least && end / Number(r) <= 30) ?? all.at(-1);
 };
+
+// A browser may keep fewer digits of a slider than its end has.
+const slidTo = (slider, end) => {
+  const t = Number(slider.value);
+  return t > (1 - 1e-9) * end ? end : t;
+};
+// Space and the arrows move the clock, wherever what has the focus has no use for them of its own; Home and End, which move the page, only at the clock
+// and the picture.
+const USED_BY = { " ": "button, summary, select, textarea, input:not(#slider)", ArrowLeft: "select, textarea, input:not(#slider, [type=checkbox])" };
+USED_BY.ArrowRight = USED_BY.ArrowLeft;
+const scrolls = (part, along, size) => /auto|scroll/.test(getComputedStyle(part)[`overflow${along}`]) && part[`scroll${size}`] > part[`client${size}`];
+const usesKey = (part, key) => part.matches(USED_BY[key] ?? ":not(*)") || (key === " " ? scrolls(part, "Y", "Height") : scrolls(part, "X", "Width"));
+const clockKeys = ({ end, now, go, toggle }, picture) =>
+  addEventListener("keydown", (event) => {
+    const { key, target } = event;
+    const step = ((event.shiftKey ? 10 : 1) * end) / 200;
+    const by = (steps) => () => go(now.t + steps * step);
+    const anywhere = { " ": toggle, ArrowRight: by(1), ArrowLeft: by(-1) };
+    const ends = { Home: () => go(0), End: () => go(end) };
+    const slides = { ArrowUp: by(1), ArrowDown: by(-1), PageUp: by(10), PageDown: by(-10) };
+    const atSlider = target.closest?.("#slider");
+    const does = { ...anywhere, ...(atSlider || target.closest?.(picture) ? ends : {}), ...(atSlider ? slides : {}) }[key];
+    if (!does || end === 0 || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || (key === " " && event.shiftKey)) return;
+    if (target instanceof Element && usesKey(target, key)) return;
+    event.preventDefault();
+    does();
+  });
 
 // A line at the time of the clock; whoever points at a plot sets the clock.
 let stageGo = () => {};

@@ -223,6 +223,7 @@ const drawBody = (body, now, into) => {
     }
   } else if (body.kind === "spacecraft") {
     drawSpacecraft(body, q, place, at, solid, line, into, colour);
+    label = add(at, [0, 0, -0.8]);
   } else {
     into.dots.push({ at, colour, leads: body.leads });
     if (layout.rails.has(body)) line([[0, at[1], 0], [RAIL, at[1], 0]], { alpha: 0.25, width: 1 });

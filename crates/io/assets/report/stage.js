@@ -18,7 +18,6 @@ const stage = (() => {
   const watchers = [];
 
   slider.max = String(end);
-  slider.step = String(end / 2000 || "any");
   slider.disabled = play.disabled = end === 0;
   bodies.forEach((body) => chosen.append(element("option", { value: String(body.vertex), textContent: body.name })));
   part("choice").hidden = bodies.length < 2;
@@ -32,14 +31,17 @@ const stage = (() => {
     drawTrails(pen, see, frame, colours, hidden, now.alone);
     drawMarks(pen, see, frame, colours, now.hovered ?? now.alone);
     drawEdges(pen, see, frame, colours, heard);
-    drawWords(pen, see, frame, colours, now);
+    return drawWords(pen, see, frame, colours, now);
   };
   // All of the picture at a time, projected.
   const paintAt = (pen, t, width, height) => {
     const frame = frameAt(t, hidden);
     pen.fillStyle = colour("--surface");
     pen.fillRect(0, 0, width, height);
-    paint(pen, looking(width, height, frame.nodes), frame, heardAt(t), true);
+    const unnamed = paint(pen, looking(width, height, frame.nodes), frame, heardAt(t), true);
+    if (unnamed === 0) return;
+    Object.assign(pen, { font: WORDS, fillStyle: colours.muted });
+    pen.fillText(unnamedWords(unnamed), 8, height - 8);
   };
   const drawing = () => {
     const [width, height] = [view.clientWidth, view.clientHeight];
@@ -56,6 +58,14 @@ const stage = (() => {
     lighting.draw(seen.see, seen.frame, colours);
     if (!now.playing) finely = setTimeout(() => now.flat || lighting.draw(seen.see, seen.frame, colours, true), 160);
   };
+  // The graph above does not move when there is less to say.
+  const heardWords = part("graph-words");
+  const sayHeard = (text) => {
+    if (heardWords.textContent === text) return;
+    heardWords.textContent = text;
+    heardWords.style.minHeight = `${Math.max(parseFloat(heardWords.style.minHeight) || 0, heardWords.getBoundingClientRect().height)}px`;
+  };
+  addEventListener("resize", () => (heardWords.style.minHeight = ""));
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -68,7 +78,7 @@ const stage = (() => {
     const see = looking(width, height, frame.nodes);
     // What passes in less than six frames only flickers.
     const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
-    paint(ctx, see, frame, heard, now.flat);
+    const unnamed = paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
     if (!now.flat) lit();
     frames += 1;
@@ -77,10 +87,10 @@ const stage = (() => {
     slider.setAttribute("aria-valuetext", `${number(now.t, 4)} seconds`);
     graphPicture(heard);
     const lost = lostWords(frame);
-    const where = [said, lost].filter(Boolean).join("; ");
+    const where = [unnamed > 0 && unnamedWords(unnamed), said, lost].filter(Boolean).join("; ");
     if (tip.textContent !== where) tip.textContent = where;
     const text = graphWords(heard);
-    if (part("graph-words").textContent !== text) part("graph-words").textContent = text;
+    sayHeard(text);
     const graphs = scene.graphs.length;
     part("graph-when").textContent = `${heard.graph === null ? "unknown " : graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
     for (const plot of plots) plot.clock?.(now.t);
@@ -136,7 +146,7 @@ const stage = (() => {
     later();
   };
   play.onclick = () => setPlaying(!now.playing);
-  slider.oninput = () => (setPlaying(false), go(Number(slider.value)));
+  slider.oninput = () => (setPlaying(false), go(slidTo(slider, end)));
   chosen.onchange = () => ((now.alone = chosen.value === "" ? null : Number(chosen.value)), regroup(), ask());
   part("view-reset").onclick = () => (Object.assign(camera, FIRST_VIEW, { zoom: 1 }), ask());
   const follow = part("follow");
@@ -148,11 +158,7 @@ const stage = (() => {
   const zoom = (by) => ((camera.zoom = Math.min(30, Math.max(charted ? 1 : 0.3, camera.zoom * by))), ask());
   const turn = (az, el) => (turnCamera(az, el), ask());
   view.addEventListener("keydown", (event) => {
-    const fine = event.shiftKey ? 10 : 1;
     const does = {
-      " ": () => setPlaying(!now.playing),
-      ArrowRight: () => go(now.t + (fine * end) / 200), ArrowLeft: () => go(now.t - (fine * end) / 200),
-      Home: () => go(0), End: () => go(end),
       a: () => turn(-6, 0), d: () => turn(6, 0), w: () => turn(0, 6), s: () => turn(0, -6),
       "+": () => zoom(1.2), "=": () => zoom(1.2), "-": () => zoom(1 / 1.2),
     }[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -160,11 +166,9 @@ const stage = (() => {
     event.preventDefault();
     does();
   });
-  slider.addEventListener("keydown", (event) => {
-    if (event.key !== " ") return;
-    event.preventDefault();
-    setPlaying(!now.playing);
-  });
+  clockKeys({ end, now, go, toggle: () => setPlaying(!now.playing) }, "#view");
+  part("view-reset").before(...zoomButtons("the picture", zoom));
+  part("reset").before(element("span", { className: "zooms" }, ...zoomButtons("all plots, at the clock", (by) => zoomAbout(now.t, by))));
 
   // One finger or the mouse turns, two fingers zoom; the page scrolls as ever where the picture lies flat.
   const held = new Map();
@@ -221,22 +225,20 @@ const stage = (() => {
     zoom(Math.exp(-0.004 * event.deltaY));
   }, { passive: false });
 
-  // What marks in the picture mean, of those that it has.
-  const marks = () => {
-    const crafts = bodies.filter((b) => b.kind === "spacecraft");
-    const spun = crafts.filter((b) => b.wheel_axes.length > 0);
-    const spins = spun.some((b) => b.wheels.length > 0);
-    return [crafts.some((b) => b.target.length === 4) && "dashed: axes of the target", spun.length > 0 && "circles: reaction wheels", spins && "arrows: their momenta"];
+  const help = () => {
+    const time = "Space plays and pauses, and ← and → move in time, with Shift faster, wherever nothing has the focus that uses these keys. With the picture or the slider in focus, Home and End go to the start and the end.";
+    const space = charted ? "Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it." : "Drag or W, A, S, D turn the picture; the wheel with Ctrl, two fingers, + and − zoom.";
+    return `${time} ${space} Plots follow the same clock: point at one to go to that time.`;
   };
   const describe = () => {
     const kinds = [...new Set(bodies.map((b) => b.kind))].join(", ");
     const led = scene.leader ? `, led by ${scene.leader.name}` : "";
     view.setAttribute("aria-label", charted ? `positions of ${bodies.length} over time${led}; time by keys` : `${bodies.length} in space (${kinds})${led}; turn and time by keys`);
-    if (charted) part("view-help").textContent = "Space plays and pauses; ← and → move in time, with Shift faster; Home and End go to the start and the end. Drag to set the clock; the wheel with Ctrl, two fingers, + and − zoom in on it. Plots follow the same clock: point at one to go to that time.";
+    part("view-help").textContent = help();
     const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
     const size = floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
-    said = charted ? "positions over time; drag to set the clock" : [size, ...marks()].filter(Boolean).join("; ");
+    said = charted ? "positions over time; drag to set the clock" : [size, ...marksOf(bodies)].filter(Boolean).join("; ");
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());

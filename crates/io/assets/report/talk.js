@@ -45,7 +45,7 @@ const talk = (() => {
   const choose = () => {
     const card = all.find((c) => c.dataset.plot === which.value);
     host.dataset.plot = card.dataset.plot;
-    const [name, letters] = [card.querySelector("h3").firstChild.textContent, card.querySelector("h3 .by")?.textContent];
+    const [name, letters] = [headingOf(card.querySelector("h3")), card.querySelector("h3 .by")?.textContent];
     host.querySelector("h3").textContent = letters ? `${name}, ${letters}` : name;
     host.dataset.empty = card.dataset.empty ?? "";
     const before = state.get(host)?.plot ?? null;
@@ -55,7 +55,7 @@ const talk = (() => {
     requestAnimationFrame(() => requestAnimationFrame(redraw));
   };
   const heading = () => {
-    const [name, unit] = [host.querySelector("h3").firstChild.textContent, host.querySelector(".unit")?.textContent.trim()];
+    const [name, unit] = [headingOf(host.querySelector("h3")), host.querySelector(".unit")?.textContent.trim()];
     return [name, unit && `in ${unit}`, chosenOf(host)].filter(Boolean).join(", ");
   };
   const plotNow = () => state.get(host)?.plot ?? null;
@@ -214,7 +214,7 @@ const talk = (() => {
   const open = () => {
     which.replaceChildren(
       ...all.filter((card) => card.dataset.plot !== "gantt" && state.get(card)?.plot)
-        .map((card) => element("option", { value: card.dataset.plot, textContent: card.querySelector("h3").firstChild.textContent })),
+        .map((card) => element("option", { value: card.dataset.plot, textContent: headingOf(card.querySelector("h3")) })),
     );
     dialog.showModal();
     progress.textContent = "";
