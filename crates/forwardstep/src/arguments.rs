@@ -2,6 +2,7 @@
 
 mod experiments;
 mod suggest;
+pub(crate) mod usage;
 
 pub(crate) use experiments::{
     AttackOptions, AttackTarget, CompareOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions,
@@ -143,7 +144,8 @@ pub(crate) struct RunOptions {
     /// Write the page while the run goes on too, from its first second on and for a few percent of its time; a browser loads it again by itself
     #[arg(long)]
     pub(crate) follow: bool,
-    /// Draw robots as their URDFs describe them: boxes, cylinders, balls, and STL, OBJ and DAE inside the URDF's own folder or package, as
+    /// Draw robots as their URDFs describe them: boxes, cylinders, balls, and STL, OBJ and DAE inside the URDF's own folder or package (a folder above it with
+    /// the name of the package), as
     /// fine as 1 MB holds
     #[arg(long)]
     pub(crate) meshes: bool,
@@ -279,17 +281,17 @@ pub(crate) struct NewOptions {
     #[arg(long, value_name = "SCENARIO", conflicts_with_all = ["name", "agents", "robot", "dry_friction", "order", "exchange", "leader", "graph", "delay"], add = ArgValueCompleter::new(suggest::shipped))]
     pub(crate) like: Option<String>,
     /// How many agents there are, 1 to 100; two or more where they are to agree [default: 4]
-    #[arg(long, value_name = "N", value_parser = count_of_agents)]
+    #[arg(long, value_name = "N", value_parser = count_of_agents, allow_negative_numbers = true)]
     pub(crate) agents: Option<u32>,
-    /// Their robot: a kind (planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, strict_feedback, pure_feedback), ur5e, panda
-    /// or the path of a URDF [default: planar_arm]
+    /// Their robot: a kind (planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, vector_chain, strict_feedback,
+    /// pure_feedback), ur5e, panda or the path of a URDF [default: planar_arm]
     #[arg(long, value_name = "ROBOT", add = ArgValueCompleter::new(suggest::kinds_and_robots))]
     pub(crate) robot: Option<String>,
     /// Give every joint dry friction, and keep estimates within bounds
     #[arg(long)]
     pub(crate) dry_friction: bool,
     /// The order of the reference dynamics, 1 to 8 [default: 2]
-    #[arg(long, value_name = "L", value_parser = order)]
+    #[arg(long, value_name = "L", value_parser = order, allow_negative_numbers = true)]
     pub(crate) order: Option<u32>,
     /// What agents tell each other [default: position_velocity]
     #[arg(long, value_enum)]

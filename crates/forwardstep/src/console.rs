@@ -190,13 +190,15 @@ fn continued(line: &str, width: usize) -> String {
     textwrap::fill(content, between_words(width).initial_indent(&first).subsequent_indent(&rest))
 }
 
-/// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output.
-pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
+/// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output, which fails where that
+/// cannot be written, unless the reader simply went away.
+pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) -> io::Result<()> {
     // What is asked for repeats no argument.
     if !answer.use_stderr() {
-        // A closed output leaves only the exit status to tell.
-        let _ = answer.print();
-        return;
+        return answer.print().and_then(|()| io::stdout().flush()).or_else(|error| match error.kind() {
+            ErrorKind::BrokenPipe => Ok(()),
+            _ => Err(error),
+        });
     }
     let mut said = answer.render().ansi().to_string();
     for argument in arguments.iter().map(|argument| argument.to_string_lossy()).filter(|a| a.contains(breaks_lines)) {
@@ -209,7 +211,9 @@ pub(crate) fn show_usage(answer: &clap::Error, arguments: &[OsString]) {
             }
         }
     }
+    // A closed standard error leaves only the exit status to tell.
     let _ = write!(AutoStream::auto(io::stderr()), "{}", harmless(&said, |c| c.escape_debug().to_string()));
+    Ok(())
 }
 
 /// Says one sentence on standard error.

@@ -1,5 +1,6 @@
 //! Mistakes as they are told on standard error.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use forwardstep::io::one_line;
@@ -60,7 +61,7 @@ impl Diagnostic for Told<'_> {
 #[derive(Debug)]
 pub(crate) struct Plain<E> {
     error: E,
-    help: Option<&'static str>,
+    help: Option<Cow<'static, str>>,
 }
 
 impl<E> Plain<E> {
@@ -68,8 +69,8 @@ impl<E> Plain<E> {
         Plain { error, help: None }
     }
 
-    pub(crate) fn with_help(error: E, help: Option<&'static str>) -> Self {
-        Plain { error, help }
+    pub(crate) fn with_help(error: E, help: Option<impl Into<Cow<'static, str>>>) -> Self {
+        Plain { error, help: help.map(Into::into) }
     }
 }
 
@@ -83,6 +84,6 @@ impl<E: fmt::Debug + fmt::Display> std::error::Error for Plain<E> {}
 
 impl<E: fmt::Debug + fmt::Display> Diagnostic for Plain<E> {
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
     }
 }

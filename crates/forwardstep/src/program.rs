@@ -1,12 +1,13 @@
 //! The program: arguments in, a command, an exit status.
 
 use std::ffi::OsString;
+use std::io;
 use std::process::ExitCode;
 
 use clap::Parser;
 use forwardstep_io::scenario::kinds::Kinds;
 
-use crate::arguments::{Arguments, Command};
+use crate::arguments::{Arguments, Command, usage};
 use crate::commands;
 use crate::console::{self, Console};
 use crate::status::Status;
@@ -41,8 +42,11 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
     let command = match Arguments::try_parse_from(&arguments) {
         Ok(Arguments { command }) => command.unwrap_or_default(),
         Err(error) => {
-            console::show_usage(&error, &arguments);
-            return u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+            let error = usage::with_tips(error);
+            return match console::show_usage(&error, &arguments) {
+                Ok(()) => u8::try_from(error.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),
+                Err(error) => unwritten(&error).into(),
+            };
         }
     };
     let mut console = Console::new();
@@ -70,11 +74,14 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
     };
     // Text that could not be written is a failure of its own, but must not hide another.
     match console.finish() {
-        Err(error) if status == Status::Fine => {
-            let said = format!("cannot write to the standard output: {error}");
-            let help = Some("what the command wrote into files is whole; its words are what is missing");
-            console::complain(&console::Plain::with_help(said, help)).into()
-        }
+        Err(error) if status == Status::Fine => unwritten(&error).into(),
         _ => status.into(),
     }
+}
+
+/// Says that words could not be written.
+fn unwritten(error: &io::Error) -> Status {
+    let said = format!("cannot write to the standard output: {error}");
+    let help = Some("what the command wrote into files is whole; its words are what is missing");
+    console::complain(&console::Plain::with_help(said, help))
 }

@@ -105,6 +105,8 @@ fn a_run_that_was_killed_has_its_rows() {
             // Its files are not needed any more, and a run does not take the place of what was kept.
             let error = stderr(&forwardstep(&folder, &["run", "first-order", "--out", &out]).code(2));
             assert!(error.contains("is not empty"), "{error}");
+            let kept = format!("`forwardstep report {out}` writes the files of what it computed");
+            assert!(error.contains(&kept) && !error.contains("--force"), "{error}");
             fs::rename(path("links.csv"), path("moved.csv")).unwrap();
         }
         let note = stderr(&forwardstep(&folder, &["report", &out, "--out", &format!("{out}-elsewhere")]).success());

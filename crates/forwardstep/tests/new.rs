@@ -158,20 +158,26 @@ fn dry_friction_is_written_for_robots_with_joints_and_estimates_are_kept_near_wh
         ("tree.urdf", "robot.urdf.friction.dry = {}"),
     ] {
         let file = format!("{}.toml", robot.trim_end_matches(".urdf"));
-        forwardstep(&folder, &["new", &file, "--robot", robot, "--agents", "2", "--dry-friction"]).success();
+        let arguments = ["new", &file, "--robot", robot, "--agents", "2", "--dry-friction"];
+        let told = stderr(&forwardstep(&folder, &arguments).success());
+        assert!(told.contains("0.8 of everything known") && !told.contains("nothing known"), "{told}");
         let text = fs::read_to_string(folder.path().join(&file)).unwrap();
         assert!(text.contains(line) && text.contains("bounds.within = 0.3") && !text.contains("\"ignore\""), "{text}");
         assert_eq!(text.matches("estimate_start").count(), 1, "{text}");
         let report = stdout(&forwardstep(&folder, &["check", &file]).code(1));
         assert!(report.contains("smooth-friction") || report.contains("dry friction"), "{report}");
     }
+    // Nobody pushes them.
+    forwardstep(&folder, &["run", "point_mass.toml"]);
+    let page = fs::read_to_string(folder.path().join("forwardstep-runs/point_mass/report.html")).unwrap();
+    assert!(page.contains("τ_ext, by the joints themselves") && !page.contains("τ_ext, by pushes"));
 }
 
 #[test]
 fn mistakes_are_status_two_and_nothing_is_overwritten() {
     let folder = folder();
     fs::write(folder.path().join("mine.toml"), "mine").unwrap();
-    let cases: [(&[&str], &str); 17] = [
+    let cases: [(&[&str], &str); 19] = [
         (&["mine.toml"], "`mine.toml` already exists"),
         (&["none/new.toml"], "make its folder first"),
         (&["new.toml", "--robot", "ur5"], "did you mean `ur5e`?"),
@@ -181,6 +187,8 @@ fn mistakes_are_status_two_and_nothing_is_overwritten() {
         (&["new.toml", "--robot", "vehicle", "--order", "2"], "dynamics of order 3, not 2"),
         (&["new.toml", "--robot", "chain", "--exchange", "position_velocity"], "positions of others only"),
         (&["new.toml", "--robot", "rotorcraft", "--leader"], "vehicles-behind-a-leader"),
+        (&["new.toml", "--robot", "chain", "--leader"], "`reference.desired`"),
+        (&["new.toml", "--robot", "quadrotor"], "`robot.rotorcraft`"),
         (&["new.toml", "--leader", "--delay", "radio"], "leader-over-late-links"),
         (&["new.toml", "--leader", "--order", "2"], "cannot be used with"),
         (&["new.toml", "--robot", "spacecraft", "--graph", "star"], "a target of its own"),

@@ -108,6 +108,7 @@ impl ReadError {
         match self {
             ReadError::NotUtf8 { .. } => Some("save it as UTF-8"),
             ReadError::NotAFile(_) => Some("save what it gives as a file, and name that"),
+            ReadError::Refused(ErrorKind::PermissionDenied) => Some("ask for the right to read it, or name a copy"),
             _ => None,
         }
     }

@@ -63,6 +63,16 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, _, candidate)| candidate.to_owned())
 }
 
+/// Whether a word differs from a candidate by two letters at most, and by one where it is short: then that is what was meant, whatever else
+/// it may mean.
+pub(crate) fn is_slip<'a>(word: &str, mut candidates: impl Iterator<Item = &'a str>) -> bool {
+    let folded = word.to_lowercase();
+    let most = (folded.chars().count() / 3).clamp(1, 2);
+    // More letters than that make a difference of more.
+    let is_near = |candidate: &str| candidate.len().abs_diff(folded.len()) <= 4 * most;
+    candidates.any(|candidate| is_near(candidate) && strsim::osa_distance(&folded, &candidate.to_lowercase()) <= most)
+}
+
 /// A name as a shell takes it for one word, to be pasted.
 pub fn for_shell(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "._/-+:=@%,".contains(c);

@@ -43,7 +43,7 @@ pub(crate) struct FalsifyOptions {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Stop after this time
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) seconds: Option<f64>,
     /// The folder for scenarios that refute something, as small as they still do
     #[arg(long, value_name = "FOLDER", default_value = "forwardstep-refuted")]
@@ -61,13 +61,13 @@ pub(crate) struct AttackOptions {
     #[arg(value_name = "DESIGN|SCENARIO", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) what: String,
     /// Pieces of the delay, and phases of the schedule, at most
-    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=MOST_PIECES))]
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=MOST_PIECES), allow_negative_numbers = true)]
     pub(crate) pieces: u32,
     /// The same seed searches the same scenarios
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// How long to search
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive, allow_negative_numbers = true)]
     pub(crate) seconds: f64,
     /// The file for what is found
     #[arg(long, value_name = "FILE", default_value = "forwardstep-attack.toml")]
@@ -130,17 +130,17 @@ pub(crate) struct SamplingLimitOptions {
     #[arg(value_name = "SCENARIO", default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// Let torques come late by this part of the period, from 0 to 1
-    #[arg(long, value_name = "PART", value_parser = part)]
+    #[arg(long, value_name = "PART", value_parser = part, allow_negative_numbers = true)]
     pub(crate) late: Option<f64>,
     /// Take velocities from differences of positions, filtered at this cut-off
-    #[arg(long, value_name = "HZ", value_parser = positive)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) filter_hz: Option<f64>,
     /// A run works while no |s| exceeds this, in rad/s or m/s [default: twice that of a run with an eighth of the period, or |z| there]
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) peak_error: Option<f64>,
     /// It works if no more than this remains of the disagreement, or of the error, in rad or m [default: a tenth of what there is at
     /// the start, or twice what remains in that run]
-    #[arg(long, value_name = "GAP", value_parser = positive)]
+    #[arg(long, value_name = "GAP", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) disagreement: Option<f64>,
     /// Print rows of a table; of scenarios in continuous time with several delays and filters
     #[arg(long)]
@@ -153,16 +153,16 @@ pub(crate) struct ManipulabilityOptions {
     #[arg(value_name = "SCENARIO", default_value = "remark-4", add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// The manipulability gains of all agents, in 1/s to the power of the order
-    #[arg(long, value_name = "GAINS", value_delimiter = ',', default_value = "0,0.5,1,2", value_parser = not_negative)]
+    #[arg(long, value_name = "GAINS", value_delimiter = ',', default_value = "0,0.5,1,2", value_parser = not_negative, allow_hyphen_values = true)]
     pub(crate) lambda: Vec<f64>,
     /// Push this agent [default: the first that the others follow]
     #[arg(long, value_name = "AGENT")]
     pub(crate) on: Option<String>,
     /// Push on this axis, counted from 1
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true)]
     pub(crate) axis: u32,
     /// The torque or force, in N m or N; the theory is that of small ones
-    #[arg(long, value_name = "TORQUE", default_value_t = 0.01, value_parser = positive)]
+    #[arg(long, value_name = "TORQUE", default_value_t = 0.01, value_parser = positive, allow_negative_numbers = true)]
     pub(crate) torque: f64,
     /// Print rows of a table
     #[arg(long)]
@@ -176,10 +176,10 @@ pub(crate) struct SmoothnessOptions {
     #[arg(value_name = "SCENARIO", default_value = SIX_ARMS, add = ArgValueCompleter::new(suggest::scenarios))]
     pub(crate) scenarios: Vec<String>,
     /// Compare reference dynamics of these orders: agents keep their first roots, and repeat the last where there are too few
-    #[arg(long, value_name = "ORDERS", value_delimiter = ',', value_parser = order_of_reference)]
+    #[arg(long, value_name = "ORDERS", value_delimiter = ',', value_parser = order_of_reference, allow_hyphen_values = true)]
     pub(crate) orders: Vec<usize>,
     /// Put the agents under the backstepping baseline with each of these time constants of its filter, in s, and give the slope
-    #[arg(long = "filters", value_name = "SECONDS", value_delimiter = ',', value_parser = positive)]
+    #[arg(long = "filters", value_name = "SECONDS", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     pub(crate) filters_s: Vec<f64>,
     /// Print what is found as one JSON object, which `schema smoothness` describes
     #[arg(long, conflicts_with = "table")]

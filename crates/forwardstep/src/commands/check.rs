@@ -8,6 +8,7 @@ use forwardstep::io::output::{Findings, certificate_document, is_certificate};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 
+use super::patience::{LOOKING, Patience};
 use super::promise::{predictions, promise, show, show_predictions, style};
 use super::replace;
 use crate::arguments::CheckOptions;
@@ -16,6 +17,7 @@ use crate::status::Status;
 
 /// Says which theorem speaks about a scenario and whether its hypotheses hold.
 pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    let patience = Patience::with(LOOKING);
     let scenario = match kinds.open_scenario(&options.scenario) {
         Ok(scenario) => scenario,
         Err(error) => return complain(&error),
@@ -31,6 +33,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
     };
     let predicted = || predictions(&scenario.setup, options.thorough, &mut |_| ControlFlow::Continue(()));
     let predictions = options.predict.then(predicted).flatten();
+    drop(patience);
     if options.json {
         let findings = Findings::of(
             &scenario,

@@ -13,6 +13,7 @@ use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{Ending, simulate_moments};
 
+use super::patience::{LOOKING, Patience};
 use super::progress::Bar;
 use super::stop::Stop;
 use crate::arguments::ExplainOptions;
@@ -21,11 +22,13 @@ use crate::status::Status;
 
 /// Derives why a scenario converges.
 pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Console) -> Status {
+    let patience = Patience::with(LOOKING);
     let scenario = match kinds.open_scenario(&options.scenario) {
         Ok(scenario) => scenario,
         Err(error) => return complain(&error),
     };
     if options.along {
+        drop(patience);
         return along(&scenario, options.json, console).unwrap_or_else(|status| status);
     }
     let explanation = derive(&scenario.setup);

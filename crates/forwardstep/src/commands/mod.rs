@@ -14,6 +14,7 @@ mod growing;
 mod man;
 mod manipulability;
 mod new;
+mod patience;
 mod progress;
 mod promise;
 mod replace;

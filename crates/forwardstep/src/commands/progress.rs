@@ -12,18 +12,29 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// A bar on standard error; nothing at all when that is not a terminal.
 pub(crate) struct Bar {
     bar: ProgressBar,
+    /// What is simulated, where that is not the run itself.
+    what: Option<&'static str>,
     started: Instant,
     drawn: Instant,
 }
 
 impl Bar {
     pub(crate) fn new() -> Self {
+        Bar::of(None)
+    }
+
+    /// One that says what is simulated.
+    pub(crate) fn named(what: &'static str) -> Self {
+        Bar::of(Some(what))
+    }
+
+    fn of(what: Option<&'static str>) -> Self {
         let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}") {
             bar.set_style(style);
         }
         let started = Instant::now();
-        Bar { bar, started, drawn: started }
+        Bar { bar, what, started, drawn: started }
     }
 
     pub(crate) fn update(&mut self, progress: Progress) {
@@ -36,8 +47,9 @@ impl Bar {
         let wall_s = (now - self.started).as_secs_f64();
         let left_s = if t_s > 0.0 { (end_s - t_s) / t_s * wall_s } else { f64::INFINITY };
         self.bar.set_position((t_s / end_s * PARTS as f64) as u64);
+        let what = self.what.map_or_else(String::new, |what| format!("{what}: "));
         self.bar.set_message(format!(
-            "{t_s:.1} of {end_s} s, {} × real time, {} left",
+            "{what}{t_s:.1} of {end_s} s, {} × real time, {} left",
             speed(t_s / wall_s),
             duration(left_s)
         ));

@@ -17,7 +17,7 @@ pub(crate) fn report(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: 
         // Nothing replaces what another folder holds.
         move || match RunFolder::create(out, false) {
             Err(OutputError::FolderNotEmpty { path, .. }) => {
-                Err(OutputError::FolderNotEmpty { path, replaceable: false })
+                Err(OutputError::FolderNotEmpty { path, replaceable: false, cut_off: false })
             }
             made => made,
         }

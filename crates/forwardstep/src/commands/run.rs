@@ -18,6 +18,7 @@ use forwardstep::sim::{
 };
 
 use super::growing::followed;
+use super::patience::{LOOKING, Patience};
 use super::progress::Bar;
 use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
 use super::stop::Stop;
@@ -35,9 +36,11 @@ pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) ->
 }
 
 fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    let patience = Patience::with(LOOKING);
     let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     scenario.check_recording().map_err(|error| complain(&error))?;
     let promise = promise(&scenario.setup);
+    drop(patience);
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.
     let stop = Stop::listen();
@@ -75,6 +78,7 @@ pub(super) fn execute(
 
     let shapes = options.meshes.then(|| {
         let (shapes, left_out) = Shapes::read(&scenario.models);
+        let left_out = alike(&left_out);
         left_out
             .iter()
             .take(MOST_LEFT_OUT)
@@ -117,8 +121,11 @@ pub(super) fn execute(
         error.help().into_iter().for_each(remark);
     }
     journal.end(&record, metrics.clone());
+    let mut compared = None;
     if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
+        let started = Instant::now();
         record.digital = digital_cost(scenario, &outcome, stop);
+        compared = Some(started.elapsed());
     }
     let files = output::write_run(&folder, &record, output::Options { csv: options.csv })
         .map_err(|error| kept_if_journaled(refused(error), &folder))?;
@@ -129,7 +136,7 @@ pub(super) fn execute(
     if cut_short.is_some() {
         remark("Interrupted while comparing with continuous time; the run itself is complete.");
     }
-    console.text(summary(&record, &metrics, &promise.known_value(), path, &files));
+    console.text(summary(&record, &metrics, &promise.known_value(), compared, path, &files));
     Ok(match outcome.ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
         _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),
@@ -138,6 +145,24 @@ pub(super) fn execute(
         Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
         Ending::Completed => Status::Fine,
     })
+}
+
+/// Why shapes are left out, those of one reason as one.
+fn alike(left_out: &[String]) -> Vec<String> {
+    let mut all: Vec<(&str, &str, usize)> = Vec::new();
+    for why in left_out {
+        // Behind the name of the mesh.
+        let reason = why.rsplit_once("`: ").map_or(why.as_str(), |(_, reason)| reason);
+        match all.iter_mut().find(|(_, known, _)| *known == reason) {
+            Some((_, _, more)) => *more += 1,
+            None => all.push((why, reason, 0)),
+        }
+    }
+    let told = all.into_iter().map(|(first, _, more)| match more {
+        0 => first.to_owned(),
+        more => format!("{first}; so it is with {more} more"),
+    });
+    told.collect()
 }
 
 /// The outcome before the first step.
@@ -181,7 +206,7 @@ fn record<'a>(
 /// Simulates the same in continuous time, as far as the run came. Whoever does not want to wait for it may interrupt: the run
 /// itself is kept.
 fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<DigitalCost> {
-    let mut bar = Bar::new();
+    let mut bar = Bar::named("the same in continuous time");
     let until_s = outcome.recording.t_s.last().copied().filter(|last| *last > 0.0)?;
     let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| watch(&mut bar, stop, progress));
     bar.clear();
@@ -205,4 +230,17 @@ fn kept_if_journaled(status: Status, folder: &RunFolder) -> Status {
 pub(super) fn refused(error: OutputError) -> Status {
     let help = error.help();
     complain(&Plain::with_help(error, help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_that_are_left_out_for_one_reason_are_told_once() {
+        let why =
+            ["a.urdf: the mesh `b.stl`: gone", "a.urdf: the mesh `c.stl`: gone", "a.urdf: it says nothing of shapes"];
+        let told = alike(&why.map(str::to_owned));
+        assert_eq!(told, ["a.urdf: the mesh `b.stl`: gone; so it is with 1 more", why[2]]);
+    }
 }

@@ -9,12 +9,13 @@ use crate::status::Status;
 pub(crate) fn scenarios(name: Option<&str>, console: &mut Console) -> Status {
     match name {
         None => {
+            let widest = SHIPPED_SCENARIOS.iter().map(|shipped| shipped.name.len()).max().unwrap_or_default();
             for shipped in SHIPPED_SCENARIOS {
                 let title = match open_scenario(shipped.name) {
                     Ok(scenario) => scenario.title,
                     Err(error) => return complain(&error),
                 };
-                console.line(format_args!("{BOLD}{:22}{BOLD:#} {title}", shipped.name));
+                console.line(format_args!("{BOLD}{:widest$}{BOLD:#} {title}", shipped.name));
             }
             Status::Fine
         }

@@ -1,12 +1,13 @@
 //! The table at the end of a run.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
 use forwardstep::io::output::{
-    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin,
+    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin, folded,
 };
 use forwardstep::io::shown;
 use forwardstep::sim::reference::Backstepping;
@@ -25,11 +26,12 @@ fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String 
 }
 
 /// A few lines: what was promised, what happened, what it cost, and where it is.
-/// `predicted` is the value that they are to agree on, with the digits that are known.
+/// `predicted` is the value that they are to agree on, with the digits that are known, `compared` the time that the same took in continuous time.
 pub(crate) fn summary(
     record: &RunRecord<'_>,
     metrics: &Metrics,
     predicted: &str,
+    compared: Option<Duration>,
     folder: &Path,
     files: &[PathBuf],
 ) -> String {
@@ -37,7 +39,7 @@ pub(crate) fn summary(
     let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
     if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
         rows.push(("in words", sentence));
-        rows.extend(advice.into_iter().map(|line| ("to change", line)));
+        rows.extend(folded(advice).into_iter().map(|line| ("to change", line)));
     }
     if let Some(goal) = &record.goal {
         rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));
@@ -85,7 +87,8 @@ pub(crate) fn summary(
     rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));
     if let Some(wall_s) = statistics.wall.map(|wall| wall.as_secs_f64()) {
         let factor = metrics.last_t_s.unwrap_or(0.0) / wall_s.max(1e-9);
-        rows.push(("wall time", format!("{wall_s:.2} s, {} × real time", speed(factor))));
+        let twin = compared.map(|wall| format!(", and {:.2} s for the same in continuous time", wall.as_secs_f64()));
+        rows.push(("wall time", format!("{wall_s:.2} s, {} × real time{}", speed(factor), twin.unwrap_or_default())));
     }
     rows.push(("files", names(folder, files)));
 

@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::QUICK;
-use crate::support::{folder, forwardstep, stdout};
+use crate::support::{folder, forwardstep, stderr, stdout};
 
 /// Twelve carts, every other at the other end.
 const RING: &str = r#"format = 2
@@ -87,4 +87,62 @@ fn what_late_links_leave_behind_a_leader_is_said_to_be_theirs() {
         assert_eq!(said.contains("messages are late"), late, "{name}: {said}");
         assert_eq!(said.contains("robots do not follow"), !late, "{name}: {said}");
     }
+}
+
+#[test]
+fn regress_what_the_comparison_with_continuous_time_takes_is_told_too() {
+    let folder = folder();
+    fs::write(folder.path().join("two.toml"), format!("{QUICK}[control]\nsample_hz = 50\n")).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "two.toml"]).success());
+    let wall = said.lines().find(|line| line.trim_start().starts_with("wall time")).unwrap();
+    assert!(wall.contains(" × real time, and ") && wall.ends_with(" s for the same in continuous time"), "{wall}");
+    fs::write(folder.path().join("two.toml"), QUICK).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "two.toml", "--force"]).success());
+    assert!(!said.contains("for the same in continuous time"), "{said}");
+}
+
+#[test]
+fn regress_a_scenario_without_a_command_is_told_its_command() {
+    let folder = folder();
+    for (word, pasted) in [("two.toml", "two.toml"), ("six-arms", "six-arms"), ("my arms.toml", "'my arms.toml'")] {
+        let said = stderr(&forwardstep(&folder, &[word]).code(2));
+        assert!(said.contains(&format!("`forwardstep run {pasted}`")), "{said}");
+    }
+    let said = stderr(&forwardstep(&folder, &["nonsense"]).code(2));
+    assert!(!said.contains("forwardstep run"), "{said}");
+}
+
+#[test]
+fn regress_values_below_zero_are_refused_as_values() {
+    let folder = folder();
+    let cases: [(&[&str], &str); 5] = [
+        (&["new", "--agents", "-3"], "must be a whole number from 1 to 100"),
+        (&["new", "--order", "-1"], "must be a whole number from 1 to 8"),
+        (&["manipulability", "--lambda", "-1,0"], "must be a number of at least 0"),
+        (&["smoothness", "--filters", "-0.1"], "must be a number above 0"),
+        (&["sampling-limit", "--late", "-1"], "invalid value '-1'"),
+    ];
+    for (arguments, words) in cases {
+        let said = stderr(&forwardstep(&folder, arguments).code(2));
+        assert!(said.contains(words) && !said.contains("'-- -"), "{arguments:?}: {said}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_help_that_cannot_be_written_is_an_error_and_a_name_that_is_no_text_has_a_next_step() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    use std::process::{Command, Stdio};
+
+    let binary = assert_cmd::cargo::cargo_bin("forwardstep");
+    for arguments in [&["--help"][..], &["run", "--help"], &["-V"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output = Command::new(&binary).args(arguments).stdout(full).stderr(Stdio::piped()).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && said.contains("cannot write to the standard output"), "{said}");
+    }
+    let output = Command::new(&binary).arg("run").arg(OsStr::from_bytes(b"\xff.toml")).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && said.contains("rename the file"), "{said}");
 }

@@ -52,7 +52,7 @@ impl Conclusion {
         let bound = bound.unwrap_or(VANISHED * largest);
         // What was nothing from the start has vanished as well.
         let reached = last < bound || last == 0.0;
-        let trend = Trend::of(&series.overall);
+        let trend = Trend::of(&record.outcome.recording.t_s, &series.overall);
         let sentence = end.sentence(record.setup, reached, trend);
         let advice = if reached { Vec::new() } else { advice(record, metrics, trend, bound / last) };
         Some(Conclusion { reached, sentence, advice })
@@ -66,7 +66,7 @@ struct End {
     /// The agent furthest from its target; two agents furthest apart.
     agents: Vec<usize>,
     gap: f64,
-    /// The largest speed of any agent on that axis, where it is recorded.
+    /// The largest speed of any agent on an axis with the same unit, where it is recorded and agents should come to rest.
     speed: Option<f64>,
 }
 
@@ -93,7 +93,16 @@ impl End {
             Gap::Error => vec![highest],
             Gap::Disagreement => vec![lowest.min(highest), lowest.max(highest)],
         };
-        let speeds = agents.filter_map(|agent| table.column(agent, Signal::Velocity, axis).and_then(last_of));
+        // Offsets may travel, and agents with them.
+        let travels = agents.clone().any(|agent| table.column(agent, Signal::Offset, axis).is_some());
+        let unit_of = |agent: usize, axis: usize| unit(table.setup, agent, Signal::Velocity, axis);
+        let own = unit_of(lowest, axis);
+        let alike =
+            |agent: &usize| (0..series.per_axis.len()).filter(|axis| unit_of(*agent, *axis) == own).collect::<Vec<_>>();
+        let speeds = agents.filter(|_| !travels).flat_map(|agent| {
+            let axes = alike(&agent).into_iter();
+            axes.filter_map(move |axis| table.column(agent, Signal::Velocity, axis).and_then(last_of))
+        });
         let speed = speeds.map(f64::abs).reduce(greater);
         Some(End { kind, axis, agents: agents_named, gap, speed })
     }
@@ -135,23 +144,23 @@ enum Trend {
 }
 
 impl Trend {
-    /// By the largest value of the last quarter of the rows and of the one before, which of a gap that falls from row to row is
+    /// By the largest value of the last quarter of the time and of the one before, which of a gap that falls from row to row is
     /// the one at their start: by those at their ends there.
-    fn of(overall: &[f64]) -> Trend {
-        let quarter = overall.len() / 4;
-        if quarter == 0 {
+    fn of(t_s: &[f64], overall: &[f64]) -> Trend {
+        let (Some(begin_s), Some(end_s)) = (t_s.first(), t_s.last()) else { return Trend::Stays };
+        let quarter_s = 0.25 * (end_s - begin_s);
+        // Rows need not be evenly spaced.
+        let row_from = |quarters: f64| t_s.partition_point(|t_s| *t_s < end_s - quarters * quarter_s);
+        let (earlier, last_quarter, end) = (row_from(2.0), row_from(1.0), t_s.len().min(overall.len()));
+        if earlier >= last_quarter || last_quarter + 1 >= end {
             return Trend::Stays;
         }
-        if let [first, .., last] = overall[overall.len() - 1 - quarter..]
-            && overall[overall.len() - 2 * quarter..].is_sorted_by(|before, after| before >= after)
-            && last < FALLS_STEADILY * first
-        {
-            return Trend::Falls(last / first);
+        let (first, last) = (overall[last_quarter], overall[end - 1]);
+        if overall[earlier..end].is_sorted_by(|before, after| before >= after) && last < FALLS_STEADILY * first {
+            return Trend::Falls((last / first).powf(quarter_s / (end_s - t_s[last_quarter])));
         }
-        let largest = |part: &[f64]| part.iter().copied().fold(0.0, greater);
-        let end = overall.len();
-        let [before, last] = [2, 1].map(|back| largest(&overall[end - back * quarter..end - (back - 1) * quarter]));
-        match last / before {
+        let largest = |rows: std::ops::Range<usize>| overall[rows].iter().copied().fold(0.0, greater);
+        match largest(last_quarter..end) / largest(earlier..last_quarter) {
             left if left < FALLS => Trend::Falls(left),
             left if left > 1.0 / FALLS => Trend::Grows,
             _ => Trend::Stays,
@@ -267,16 +276,31 @@ mod tests {
 
     #[test]
     fn the_trend_is_that_of_the_last_quarters() {
-        let of = |values: &[f64]| Trend::of(values);
-        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 3.0, 4.0, 2.0, 1.0]), Trend::Falls(0.5));
+        let of = |values: &[f64]| {
+            let t_s: Vec<f64> = (0..values.len()).map(|row| row as f64).collect();
+            Trend::of(&t_s, values)
+        };
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 3.0, 4.0, 2.0, 1.0, 2.0]), Trend::Falls(0.5));
         // From row to row, by what is left at the ends.
-        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 4.0, 3.0, 2.0, 1.5]), Trend::Falls(0.5));
-        assert_eq!(of(&[8.0, 7.9, 7.8, 7.7, 7.6, 7.5, 7.4, 6.9]), Trend::Falls(0.92));
-        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 7.999]), Trend::Stays);
-        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 3.0, 2.9]), Trend::Stays);
-        assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0]), Trend::Grows);
-        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 4.0, 3.5, 3.0, 2.0, 1.5]), Trend::Falls(0.5));
+        assert_eq!(of(&[8.0, 8.0, 7.9, 7.8, 7.7, 7.6, 7.5, 7.4, 6.9]), Trend::Falls(0.92));
+        assert_eq!(of(&[8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 8.0, 7.999]), Trend::Stays);
+        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 3.0, 2.9, 2.9]), Trend::Stays);
+        assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0, 4.0]), Trend::Grows);
+        assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");
         assert_eq!(of(&[3.0, 2.0, 1.0]), Trend::Stays, "too short to tell");
+    }
+
+    #[test]
+    fn regress_a_trend_does_not_depend_on_where_rows_are() {
+        let even: Vec<f64> = (0..=400).map(|row| 0.1 * f64::from(row)).collect();
+        let late: Vec<f64> = even.iter().map(|t_s| 40.0 * (t_s / 40.0).powf(0.2)).collect();
+        let early: Vec<f64> = even.iter().map(|t_s| 40.0 * (t_s / 40.0).powi(3)).collect();
+        for t_s in [even, late, early] {
+            let gap: Vec<f64> = t_s.iter().map(|t_s| (-0.1 * t_s).exp()).collect();
+            let Trend::Falls(left) = Trend::of(&t_s, &gap) else { panic!("it falls") };
+            assert!((left - (-1.0_f64).exp()).abs() < 1e-9, "{left}");
+        }
     }
 
     #[test]

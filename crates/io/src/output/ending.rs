@@ -39,6 +39,17 @@ pub fn stiff_words(setup: &Setup, ending: &Ending) -> Option<String> {
     is_stiff.then(|| because(setup, breakdown, true, stiffness, ""))
 }
 
+/// That roots of the reference dynamics ask for the short steps: what is that fast is there from the start, before the closed loop is.
+fn fast_roots(setup: &Setup, agent: usize, loop_per_s: f64) -> Option<String> {
+    /// What vanishes within a millionth of the run is not what the run is about.
+    const SHARE: f64 = 1e-6;
+    let roots = &setup.agents.get(agent)?.roots_per_s;
+    let pairs = roots.pairs.iter().map(|pair| pair.real.hypot(pair.imaginary));
+    let fastest_per_s = roots.real.iter().copied().chain(pairs).fold(0.0, f64::max);
+    let is_fast = fastest_per_s > loop_per_s && SHARE * setup.time.end_s * fastest_per_s > 1.0;
+    is_fast.then(|| format!("a root of the reference dynamics is at {} 1/s; lower `roots_per_s`", about(fastest_per_s)))
+}
+
 /// What happened to the signal that broke a run.
 fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
     match &breakdown.cause {
@@ -55,8 +66,9 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             let why = stiffness.as_ref().map_or_else(String::new, |stiffness| {
                 // While a transient is seen steps are shorter than the rate asks for.
                 let is_stiff = stiffness.explains(*step_s) || stiffness.forbids(floor_s);
-                let advice = "loosen the tolerances, or look at where it starts";
-                format!("; {}", because(setup, breakdown, is_stiff, stiffness, advice))
+                let advice = fast_roots(setup, breakdown.agent, stiffness.rate_per_s)
+                    .unwrap_or_else(|| "loosen the tolerances, or look at where it starts".to_owned());
+                format!("; {}", because(setup, breakdown, is_stiff, stiffness, &advice))
             });
             format!("asks for a step of {step_s:e} s, under the floor of {floor_s:e} s{why}")
         }

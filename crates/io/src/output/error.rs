@@ -1,6 +1,8 @@
 //! What can go wrong while results are written.
 
 use crate::shown;
+use crate::wording::for_shell;
+use std::borrow::Cow;
 use std::io;
 use std::path::PathBuf;
 
@@ -14,6 +16,8 @@ pub enum OutputError {
         path: PathBuf,
         /// Whether what it holds may be replaced by who asks for that.
         replaceable: bool,
+        /// Whether it holds the rows of a run that was cut off, of which nothing else is written yet.
+        cut_off: bool,
     },
     /// The folder was to be replaced, and no run wrote it.
     #[error("{} was not written by a run, and stays as it is", shown(path))]
@@ -136,7 +140,17 @@ fn is_now(folder: Option<&std::path::Path>) -> String {
 
 impl OutputError {
     /// What the user can do about it.
-    pub fn help(&self) -> Option<&'static str> {
+    pub fn help(&self) -> Option<Cow<'static, str>> {
+        if let OutputError::FolderNotEmpty { path, cut_off: true, .. } = self {
+            let folder = for_shell(&shown(path).to_string());
+            return Some(Cow::Owned(format!(
+                "the run in it was cut off: `forwardstep report {folder}` writes the files of what it computed; or choose another folder with --out"
+            )));
+        }
+        self.plain_help().map(Cow::Borrowed)
+    }
+
+    fn plain_help(&self) -> Option<&'static str> {
         const AMID: [Action; 4] = [Action::CreateFile, Action::WriteFile, Action::RenameFile, Action::RemoveFile];
         match self {
             OutputError::FolderNotEmpty { replaceable: true, .. } => {

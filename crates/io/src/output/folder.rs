@@ -100,7 +100,9 @@ impl RunFolder {
         if !is_empty(path, false)? {
             if !force {
                 let replaceable = may_be_replaced(path).is_ok();
-                return Err(OutputError::FolderNotEmpty { path: path.clone(), replaceable });
+                // A run that ended keeps what its tables have not beside them.
+                let cut_off = path.join(JOURNAL).is_file() && !path.join(SEAL).exists();
+                return Err(OutputError::FolderNotEmpty { path: path.clone(), replaceable, cut_off });
             }
             may_be_replaced(path)?;
         }

@@ -97,8 +97,22 @@ pub(crate) fn input_words(setup: &Setup) -> (&'static str, &'static str) {
     }
 }
 
-/// The same of what pushes do.
-pub(crate) fn push_words(setup: &Setup, pushed: impl Iterator<Item = (usize, usize)>) -> &'static str {
+/// The same of what acts from outside of the law, and what that is.
+pub(crate) fn external_words(
+    setup: &Setup,
+    acted_on: impl Iterator<Item = (usize, usize)>,
+) -> (&'static str, &'static str) {
+    let pushes = setup.agents.iter().any(|agent| !agent.pushes.is_empty());
+    let drives = setup.agents.iter().map(|agent| agent.robot.interface().drives);
+    let rubs = drives.into_iter().any(|drives| drives.dry_s.is_some() && !drives.friction.is_empty());
+    match (pushes, rubs) {
+        (false, true) => ("Dry friction", "τ_ext, by the joints themselves"),
+        (true, true) => (push_words(setup, acted_on), "τ_ext, by pushes and dry friction"),
+        (_, false) => (push_words(setup, acted_on), "τ_ext, by pushes"),
+    }
+}
+
+fn push_words(setup: &Setup, pushed: impl Iterator<Item = (usize, usize)>) -> &'static str {
     let units: BTreeSet<String> = pushed.map(|(agent, axis)| unit(setup, agent, Signal::External, axis)).collect();
     match units.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
         ["N"] => "External forces",

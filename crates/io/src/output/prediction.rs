@@ -228,6 +228,11 @@ impl Predictions {
                 .flat_map(|guarantee| guarantee.sentences(setup.time.end_s))
                 .map(|sentence| format!("guaranteed: {sentence}")),
         );
+        if setup.control.is_some() {
+            sentences.push(
+                "all of this is of continuous control; what samples change of it the practical verdicts say".into(),
+            );
+        }
         sentences
     }
 }

@@ -1,5 +1,6 @@
 //! Why a report cannot be built anew from the folder of a run.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::io::ErrorKind;
 use std::path::PathBuf;
@@ -233,7 +234,7 @@ impl RestoreError {
             RestoreError::Folder(OutputError::Io { source, .. }) if source.kind() == ErrorKind::PermissionDenied => {
                 "make the folder writable for yourself, or copy it to where you may write".into()
             }
-            RestoreError::Folder(error) => return error.help().map(str::to_owned),
+            RestoreError::Folder(error) => return error.help().map(Cow::into_owned),
             RestoreError::Scenario(_) => return None,
         })
     }

@@ -63,7 +63,10 @@ impl Diagnostic for OpenRobotError {
                 let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
                 (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
             }
-            OpenRobotError::File { .. } => None,
+            OpenRobotError::File { reason, .. } => {
+                let help = reason.help().unwrap_or("name the URDF itself: XML that begins with <robot name=\"…\">");
+                Some(Box::new(help))
+            }
             OpenRobotError::Robot(_) | OpenRobotError::State(_) => self.inner()?.help(),
         }
     }

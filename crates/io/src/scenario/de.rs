@@ -20,6 +20,7 @@ use super::document::Node;
 use super::edges_file::LIST_OR_CHOICE;
 use super::fault::Fault;
 use super::file::{AGENT_REFERENCE, LAW, REFERENCE, ROBOT};
+use super::formula_text::{FORMULA, of_any_length};
 use super::kinds::Kinds;
 use super::network_file::{DELAY, SWITCHING};
 use super::value_problem::ValueProblem;
@@ -74,7 +75,7 @@ pub(super) fn quoted(text: &str) -> String {
     }
 }
 
-/// A text that fits into a line: every text of a scenario is a name, a choice or a title.
+/// A text that fits into a line: every text of a scenario but formulas is a name, a choice or a title.
 pub(super) fn plain(text: &str) -> Result<&str, Fault> {
     if text.len() > LONGEST_TEXT || text.contains(breaks_lines) {
         return Err(Fault::new(ValueProblem::Text { found: quoted(text), most: LONGEST_TEXT }));
@@ -256,7 +257,10 @@ impl<'de> Deserializer<'de> for ValueDe<'_, '_> {
         } else if name == DELAY {
             self.kinds.delay(self).map_err(|fault| fault.at(&self.value.span()))?;
             visitor.visit_u64(Node::of(self.value).0)
-        } else if name == LIST_OR_CHOICE && !matches!(self.value.get_ref(), DeValue::Table(_)) {
+        } else if let (FORMULA, DeValue::String(text)) = (name, self.value.get_ref()) {
+            let text = of_any_length(text).and_then(|text| visitor.visit_str(text));
+            text.map_err(|fault: Fault| fault.at(&self.value.span()))
+        } else if name == FORMULA || name == LIST_OR_CHOICE && !matches!(self.value.get_ref(), DeValue::Table(_)) {
             self.deserialize_any(visitor)
         } else {
             visitor.visit_newtype_struct(self)

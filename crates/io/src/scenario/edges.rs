@@ -63,7 +63,7 @@ impl NetworkReader<'_> {
     /// Edges from a table.
     fn tabled(&mut self, csv: &CsvFile, span: &Range<usize>) -> Result<Vec<Edge>, Fault> {
         let table = table_text(&csv.file, self.folder)?;
-        let edges = edges_of(table.text()).map_err(|fault| fault.within(&table))?;
+        let edges = edges_of(table.text()).map_err(|fault| fault.within_table(&table, &csv.file))?;
         self.few_edges(edges.len() as u64, span)?;
         let mut faults = Faults::default();
         for edge in &edges {

@@ -68,6 +68,16 @@ impl Fault {
     }
 }
 
+impl Fault {
+    /// The same of a table that the scenario names: that it is none is said where it is named.
+    pub(super) fn within_table(self, table: &SourceText, file: &At<String>) -> Self {
+        match &*self.problem {
+            ScenarioProblem::Table(TableProblem::Meant { .. }) => self.at(&file.span),
+            _ => self.within(table),
+        }
+    }
+}
+
 /// The mistakes of one table, which are told together.
 #[derive(Default)]
 pub(super) struct Faults {

@@ -25,6 +25,7 @@ use super::de::quoted;
 use super::fault::Fault;
 pub use super::formula_problem::FormulaProblem;
 use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES, CONSTANTS, FUNCTIONS, JUMPS};
+use super::formula_text::FormulaText;
 use super::value_problem::ValueProblem;
 
 /// Parentheses, signs, powers and operators within each other: the reader calls itself for each.
@@ -57,22 +58,27 @@ pub fn parse_expression(text: &str, names: &[String]) -> Result<Expression, Form
 }
 
 /// Reads a formula of a scenario or a table; a mistake is placed within its text.
-pub(super) fn formula(text: &At<String>) -> Result<Expression, Fault> {
-    parse_formula(&text.value).map_err(|fault| placed(text, fault))
+pub(super) fn formula(text: &At<FormulaText>) -> Result<Expression, Fault> {
+    parse_formula(text.value.as_ref()).map_err(|fault| placed(text, fault))
 }
 
 /// Reads a formula in variables; a mistake is placed within its text.
-pub(super) fn formula_in(text: &At<String>, names: &[String]) -> Result<Expression, Fault> {
-    parse_expression(&text.value, names).map_err(|fault| placed(text, fault))
+pub(super) fn formula_in(text: &At<FormulaText>, names: &[String]) -> Result<Expression, Fault> {
+    parse_expression(text.value.as_ref(), names).map_err(|fault| placed(text, fault))
 }
 
 /// The place of a mistake in the file.
-fn placed(text: &At<String>, FormulaFault { problem, at }: FormulaFault) -> Fault {
+fn placed(text: &At<FormulaText>, FormulaFault { problem, at }: FormulaFault) -> Fault {
     // Quotation marks stand around the text; where it is written with escapes its bytes are not those of the file.
-    let marks = text.span.len().checked_sub(text.value.len());
+    let marks = text.span.len().checked_sub(text.value.as_ref().len());
     let place = match marks {
         Some(marks @ (0 | 2 | 6)) => {
             let start = text.span.start + marks / 2;
+            start + at.start..start + at.end
+        }
+        // Behind three of them the text may begin on the next line.
+        Some(7) if text.value.as_ref().contains('\n') => {
+            let start = text.span.start + 4;
             start + at.start..start + at.end
         }
         _ => text.span.clone(),

@@ -13,6 +13,7 @@ use forwardstep_sim::quantity::Sign;
 use super::at::At;
 use super::fault::{Fault, fault};
 use super::formula::formula;
+use super::formula_text::FormulaText;
 use super::kinds::delays::hold_log::Holds;
 use super::kinds::delays::log::Log;
 use super::kinds::delays::{DelayPlan, Link, LinkDelays};
@@ -36,9 +37,9 @@ pub(super) struct Links {
     pub(super) logs: BTreeMap<String, Arc<Log>>,
     /// Held values that were read, by their files.
     pub(super) held: HashMap<String, Arc<Holds>>,
-    weights: HashMap<String, Weight>,
+    weights: HashMap<FormulaText, Weight>,
     /// The delays that are written as formulas, by their texts.
-    formulas: HashMap<String, Delay>,
+    formulas: HashMap<FormulaText, Delay>,
     counted: delay::Drawn,
     /// What `link_delays` states.
     stated: HashMap<(usize, usize), Stated>,
@@ -55,7 +56,7 @@ struct Stated {
 
 impl NetworkReader<'_> {
     /// A delay that is written as a formula; equal texts are one delay.
-    pub(super) fn formula_delay(&mut self, text: &At<String>) -> Result<Delay, Fault> {
+    pub(super) fn formula_delay(&mut self, text: &At<FormulaText>) -> Result<Delay, Fault> {
         if let Some(known) = self.links.formulas.get(&text.value) {
             return Ok(known.clone());
         }
@@ -153,7 +154,7 @@ impl NetworkReader<'_> {
         }
     }
 
-    fn formula_weight(&mut self, text: &At<String>) -> Result<Weight, Fault> {
+    fn formula_weight(&mut self, text: &At<FormulaText>) -> Result<Weight, Fault> {
         let formula = formula(text)?;
         self.few_formulas(self.weights.len(), &formula, text)?;
         let bounded = BoundedFormula::new(formula, self.end_s);
@@ -168,7 +169,7 @@ impl NetworkReader<'_> {
     }
 
     /// One formula more than `known` that change with t.
-    fn few_formulas(&self, known: usize, formula: &Expression, text: &At<String>) -> Result<(), Fault> {
+    fn few_formulas(&self, known: usize, formula: &Expression, text: &At<FormulaText>) -> Result<(), Fault> {
         if known < MOST_FORMULAS || formula.is_constant() {
             return Ok(());
         }
@@ -213,7 +214,7 @@ impl NetworkReader<'_> {
 /// The weight in a cell of a table: a number, else a formula; none in an empty cell.
 pub(super) fn cell_weight(cell: &Cell<'_>) -> Result<Option<At<WeightFile>>, Fault> {
     if !cell.value.is_empty() && cell.value.parse::<f64>().is_err() {
-        let value = WeightFile::Formula(cell.value.to_string());
+        let value = WeightFile::Formula(FormulaText(cell.value.to_string()));
         return Ok(Some(At { value, span: cell.span.clone() }));
     }
     Ok(cell_number(cell)?.map(|number| At { value: WeightFile::Number(number.value), span: number.span }))

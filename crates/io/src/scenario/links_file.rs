@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Visitor};
 
 use super::at::At;
+use super::formula_text::{FORMULA, FormulaText};
 use super::network_file::DelayFile;
 
 /// A weight: a number, or a formula in t.
@@ -16,7 +17,7 @@ pub enum WeightFile {
     /// Always the same.
     Number(f64),
     /// Changes with t.
-    Formula(String),
+    Formula(FormulaText),
 }
 
 /// The delay of one link, whichever graph is in force.
@@ -34,11 +35,15 @@ pub struct LinkDelayFile {
 impl<'de> Deserialize<'de> for WeightFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct WeightVisitor;
-        impl Visitor<'_> for WeightVisitor {
+        impl<'de> Visitor<'de> for WeightVisitor {
             type Value = WeightFile;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number or a formula in t in quotes")
+            }
+
+            fn visit_newtype_struct<D: Deserializer<'de>>(self, value: D) -> Result<WeightFile, D::Error> {
+                value.deserialize_any(self)
             }
 
             fn visit_f64<E>(self, value: f64) -> Result<WeightFile, E> {
@@ -46,10 +51,10 @@ impl<'de> Deserialize<'de> for WeightFile {
             }
 
             fn visit_str<E>(self, text: &str) -> Result<WeightFile, E> {
-                Ok(WeightFile::Formula(text.to_owned()))
+                Ok(WeightFile::Formula(FormulaText(text.to_owned())))
             }
         }
-        deserializer.deserialize_any(WeightVisitor)
+        deserializer.deserialize_newtype_struct(FORMULA, WeightVisitor)
     }
 }
 

@@ -46,6 +46,7 @@ mod fault;
 pub mod file;
 pub mod formula;
 mod formula_problem;
+pub mod formula_text;
 mod gains;
 mod goal;
 mod impossible;
@@ -90,7 +91,8 @@ use std::fmt;
 
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{
-    ATOL, Method, Network, RECORD_EVERY_S, RTOL, RecordAt, Setup, Solver, TimeSpan, check_recording, recorded_columns,
+    ATOL, Method, Network, RECORD_EVERY_S, RTOL, RecordAt, Setup, SetupError, Solver, TimeSpan, check_recording,
+    recorded_columns,
 };
 use miette::Diagnostic;
 
@@ -102,6 +104,7 @@ pub use open::{OpenError, open_scenario, open_text};
 pub use problem::ScenarioProblem;
 pub use push_problem::PushProblem;
 pub use rewired::{Rewired, StatedNetwork, rewired, stated_network};
+pub use scope::called_here;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;
@@ -319,7 +322,16 @@ fn meaning(
     let (reference, exchange) = (dynamics, leading.read.exchange);
     let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
     // What a notice simulates has a meaning then.
-    recorded_columns(&setup).map_err(|error| document.refused(&setup, &read.entries, error))?;
+    recorded_columns(&setup).map_err(|error| {
+        let edge = match (&error, &file.network) {
+            (SetupError::LeaderHears { leader }, Some(network)) => network.value.edge_to(leader),
+            _ => None,
+        };
+        match edge {
+            Some(edge) => Fault::new(ScenarioProblem::Setup(error)).at(&edge),
+            None => document.refused(&setup, &read.entries, error),
+        }
+    })?;
     notices.extend(Notice::coarse_sampling(&setup));
     notices.extend(Notice::targets_beyond_limits(&setup));
     notices.extend(Notice::starts_beyond_limits(&setup));

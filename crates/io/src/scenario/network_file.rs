@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt;
+use std::ops::Range;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
@@ -40,6 +41,18 @@ pub struct NetworkFile {
     /// The graphs of a network that switches.
     #[schemars(length(min = 1))]
     pub phases: Option<At<Vec<At<PhaseFile>>>>,
+}
+
+impl NetworkFile {
+    /// Where the first edge stands that leads to this agent, if it is written by itself.
+    pub(super) fn edge_to(&self, agent: &str) -> Option<Range<usize>> {
+        let phases = self.phases.iter().flat_map(|phases| &phases.value).map(|phase| &phase.value.edges);
+        let edges = self.edges.iter().chain(phases).flat_map(|edges| match &edges.value {
+            EdgesFile::List(list) => list.as_slice(),
+            EdgesFile::Rule(_) => &[],
+        });
+        edges.into_iter().find(|edge| edge.value.to.value == agent).map(|edge| edge.span.clone())
+    }
 }
 
 /// What takes the place of a disagreement v between two agents; each is v itself where v is small. In rad or m.

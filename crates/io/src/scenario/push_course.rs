@@ -8,6 +8,7 @@ use forwardstep_sim::push::{Between, Course, Function, Table};
 use super::at::At;
 use super::fault::{Fault, fault, length, values};
 use super::formula::formula;
+use super::formula_text::FormulaText;
 use super::inputs::InputFolder;
 use super::push_file::{CourseFile, CourseRowsFile, CourseTableFile, FunctionFile, InterpolateFile};
 use super::push_problem::PushProblem;
@@ -26,7 +27,7 @@ pub(super) struct Tables<'a> {
     numbers: usize,
     /// By their text and the bits of the times between which they have a value: every axis of every agent of a population
     /// asks for the same ones.
-    formulas: HashMap<(String, [u64; 2]), Expression>,
+    formulas: HashMap<(FormulaText, [u64; 2]), Expression>,
 }
 
 impl Reader<'_, '_> {

@@ -10,6 +10,7 @@ use serde::de::{Deserializer, SeqAccess, Visitor};
 
 use super::at::At;
 use super::edges_file::LIST_OR_CHOICE;
+use super::formula_text::{FORMULA, FormulaText};
 use super::values::{Item, NotNegative, Rows};
 
 /// Something that acts on agents from outside for a while. Pushes that overlap add up.
@@ -134,7 +135,7 @@ pub enum FunctionFile {
     /// Always the same.
     Number(f64),
     /// Such as `"2*sin(3*t)"`.
-    Formula(String),
+    Formula(FormulaText),
 }
 
 /// A table over time. Nothing acts before its first row, nor after its last.
@@ -244,11 +245,15 @@ impl JsonSchema for CourseFile {
 impl<'de> Deserialize<'de> for FunctionFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct FunctionVisitor;
-        impl Visitor<'_> for FunctionVisitor {
+        impl<'de> Visitor<'de> for FunctionVisitor {
             type Value = FunctionFile;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a number or a formula in t")
+            }
+
+            fn visit_newtype_struct<D: Deserializer<'de>>(self, value: D) -> Result<FunctionFile, D::Error> {
+                value.deserialize_any(self)
             }
 
             fn visit_f64<E>(self, value: f64) -> Result<FunctionFile, E> {
@@ -256,9 +261,9 @@ impl<'de> Deserialize<'de> for FunctionFile {
             }
 
             fn visit_str<E>(self, formula: &str) -> Result<FunctionFile, E> {
-                Ok(FunctionFile::Formula(formula.to_owned()))
+                Ok(FunctionFile::Formula(FormulaText(formula.to_owned())))
             }
         }
-        deserializer.deserialize_any(FunctionVisitor)
+        deserializer.deserialize_newtype_struct(FORMULA, FunctionVisitor)
     }
 }

@@ -1,6 +1,52 @@
 //! Wishes for what is not modelled, and the nearest thing that is.
 
-/// Words that a wish is written with, each a whole word of a key, and what there is instead. The first row that fits counts.
+/// Words for what has another name here, each a whole word of a key or the key, and where it is.
+const NAMES: &[(&[&str], &str)] = &[
+    (
+        &["quadrotor", "quadrotors", "quadcopter", "multirotor", "multicopter", "hexacopter", "drone", "uav"],
+        "a quadrotor is called `rotorcraft` here: `robot.rotorcraft`",
+    ),
+    (&["satellite", "cubesat"], "a satellite is called `spacecraft` here: `robot.spacecraft`"),
+    (&["boat", "vessel", "usv"], "a vessel is called `ship` here: `robot.ship`"),
+    (
+        &["integrator", "integrators", "particle", "double_integrator"],
+        "an integrator is `robot.point_mass`, which takes forces, or `robot.chain` of any order",
+    ),
+    (
+        &["mujoco", "mjcf", "sdf", "gazebo", "usd", "xacro", "dh", "denavit"],
+        "robots are read from URDF: convert the model, and write `robot.urdf.file = \"my-robot.urdf\"`",
+    ),
+    (
+        &["gripper", "grippers", "finger", "fingers"],
+        "a gripper is a part of the URDF; its joints are held with `robot.urdf.locked = { finger_joint = 0.02 }`",
+    ),
+    (
+        &["payload", "load", "payloads"],
+        "what an arm carries is a part of its URDF: a link with its mass and inertia, held by a fixed joint; an adaptive law learns it",
+    ),
+    (
+        &["backstepping"],
+        "the baseline of backstepping is `reference.backstepping`; chains in feedback form have `law.adaptive_backstepping`",
+    ),
+    (
+        &["formation", "formations", "offset", "offsets"],
+        "vehicles and rotorcraft keep a formation by a `target` of each agent, which is then its offset from where all agree",
+    ),
+    (
+        &["packet_loss", "packet", "packets", "loss", "dropout", "dropouts", "jitter"],
+        "packets that are late and get lost are a delay: `delay.packets`, with `loss` and `jitter_s`",
+    ),
+    (
+        &["gui", "visualization", "visualisation", "viewer", "animation", "render", "plot", "plots", "display"],
+        "every run writes a page, `report.html`, with plots and a picture that plays; nothing has to be asked for",
+    ),
+    (
+        &["realtime", "real_time", "rt"],
+        "a run takes as long as it takes to compute; controllers that a clock calls are those of the library: `core::sampled::Sampled`",
+    ),
+];
+
+/// Words that a wish is written with, each a whole word of a key or the key, and what there is instead. The first row that fits counts.
 const WISHES: &[(&[&str], &str)] = &[
     (
         &[
@@ -19,15 +65,35 @@ const WISHES: &[(&[&str], &str)] = &[
             "distances",
             "separation",
         ],
-        "robots and obstacles pass through each other; position limits of a URDF can be enforced (`enforce_limits`)",
+        "a `target` keeps vehicles and rotorcraft apart by constant offsets, and joints keep to the position limits of their URDF \
+         (`enforce_limits`); else robots and obstacles pass through each other",
     ),
     (
         &["contact", "contacts", "ground", "grasp", "touch", "impact", "terrain", "floor", "slope"],
         "nothing touches anything; what pushes a robot is given as a course in time: `[[external_wrenches]]`",
     ),
     (
-        &["floating", "freeflyer", "legged", "humanoid", "mobile"],
+        &["floating", "freeflyer", "legged", "humanoid", "mobile", "quadruped", "biped", "hexapod", "legs"],
         "arms stand on a fixed base; what moves freely is a kind of its own: `robot.vehicle`, `robot.rotorcraft`, `robot.spacecraft`, `robot.ship`",
+    ),
+    (
+        &[
+            "unicycle",
+            "car",
+            "cars",
+            "bicycle",
+            "rover",
+            "wheeled",
+            "wheels",
+            "differential",
+            "diff_drive",
+            "ackermann",
+        ],
+        "nothing rolls; in the plane `robot.ship` moves in every direction, and `robot.vehicle` is pushed along one axis of its body",
+    ),
+    (
+        &["auv", "rov", "submarine", "underwater", "airplane", "aircraft", "helicopter"],
+        "in water or air there are `robot.ship` in the plane, and `robot.vehicle` and `robot.rotorcraft` in space",
     ),
     (
         &["camera", "cameras", "vision", "lidar", "image", "perception", "slam"],
@@ -46,8 +112,20 @@ const WISHES: &[(&[&str], &str)] = &[
         "the program talks to no robot; the controllers of the library do, a step at a time: `core::sampled::Sampled`",
     ),
     (
-        &["learning", "neural", "policy", "reward", "training"],
+        &["learning", "neural", "policy", "reward", "training", "rl", "reinforcement"],
         "nothing is trained; what adapts are the parameters of a model: `law.adaptive`",
+    ),
+    (
+        &["pid", "pd", "pi", "lqr", "lqg", "computed_torque", "inverse_dynamics", "feedforward"],
+        "of a robot whose parameters are known `law.known` makes z be followed with a damping K, which `law.adaptive` does of others",
+    ),
+    (
+        &["impedance", "admittance", "compliance", "stiffness", "spring", "springs"],
+        "virtual springs push as `[[external_wrenches]]`; how far agents give way when they are pushed is `manipulability_gain`",
+    ),
+    (
+        &["sliding_mode", "sliding", "smc", "h_infinity", "robust", "supertwisting"],
+        "what jumps is left to leaders: `reference.leader` has a set-valued sign, and `law.known` or `law.adaptive` follow what it asks for",
     ),
     (
         &["wind", "weather", "aerodynamics", "drag", "waves"],
@@ -55,15 +133,37 @@ const WISHES: &[(&[&str], &str)] = &[
     ),
 ];
 
-/// That a key or a choice asks for something that is not modelled, and what is nearest to it.
+/// The place of what has another name here, as `quadrotor`.
+pub fn called_here(word: &str) -> Option<&'static str> {
+    found(NAMES, &word.to_ascii_lowercase())
+}
+
+/// That a key or a choice asks for something that has another name or is not modelled, and what is nearest to it.
 pub(super) fn beyond(word: &str) -> Option<String> {
     let word = word.to_ascii_lowercase();
-    let parts: Vec<&str> = word.split(['_', '-', '.', ' ']).collect();
-    if parts.contains(&"gravity") {
+    if word.split(SEPARATORS).any(|part| part == "gravity") {
         return Some("gravity is said of each robot: `robot.urdf.gravity_m_s2 = [0, 0, -9.81]`, `robot.planar_arm.gravity_m_s2 = 9.81`".into());
     }
-    let (_, nearest) = WISHES.iter().find(|(words, _)| parts.iter().any(|part| words.contains(part)))?;
+    if let Some(name) = called_here(&word) {
+        return Some(name.to_owned());
+    }
+    let nearest = found(WISHES, &word)?;
     Some(format!("that is not modelled, see Limits in the README; the nearest there is: {nearest}"))
+}
+
+/// What stands between the words of a key.
+const SEPARATORS: [char; 4] = ['_', '-', '.', ' '];
+
+/// Whether a key is one word.
+pub(super) fn is_one(word: &str) -> bool {
+    !word.contains(SEPARATORS)
+}
+
+/// The row of the first that is a word of this key, or the key.
+fn found(rows: &[(&[&str], &'static str)], word: &str) -> Option<&'static str> {
+    let parts: Vec<&str> = word.split(SEPARATORS).collect();
+    let is_asked = |asked: &&str| parts.contains(asked) || word.replace(SEPARATORS, "_") == *asked;
+    rows.iter().find(|(words, _)| words.iter().any(is_asked)).map(|(_, says)| *says)
 }
 
 #[cfg(test)]
@@ -84,6 +184,21 @@ mod tests {
         ] {
             let said = beyond(word).unwrap_or_default();
             assert!(said.contains("not modelled, see Limits") && said.contains(part), "{word}: {said}");
+        }
+        for (word, part) in [
+            ("quadrotor", "`robot.rotorcraft`"),
+            ("packet-loss", "`delay.packets`"),
+            ("payload_kg", "its URDF"),
+            ("Formation", "`target`"),
+            ("mjcf", "read from URDF"),
+            ("backstepping", "`reference.backstepping`"),
+            ("real_time", "Sampled"),
+        ] {
+            let said = beyond(word).unwrap_or_default();
+            assert!(!said.contains("not modelled") && said.contains(part), "{word}: {said}");
+        }
+        for word in ["unicycle", "auv", "quadruped", "pid", "computed_torque", "impedance", "sliding_mode", "rl"] {
+            assert!(beyond(word).is_some_and(|said| said.contains("the nearest there is: ")), "{word}");
         }
         assert!(beyond("gravity_direction").is_some_and(|said| said.starts_with("gravity is said of each robot")));
         for word in ["", "grounds", "databases", "cameraman", "base", "weight"] {

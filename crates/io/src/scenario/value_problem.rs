@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use super::formula_problem::FormulaProblem;
 use super::refusal::advice_on_quantity;
-use super::scope::beyond;
-use crate::wording::{are, choose, count, entry_count, nearest, number};
+use super::scope::{beyond, is_one};
+use crate::wording::{are, choose, count, entry_count, is_slip, nearest, number};
 
 /// Why a value has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -38,6 +38,14 @@ pub enum ValueProblem {
     /// A text that is too long, or holds more than letters.
     #[error("the text {found} does not fit into a line")]
     Text {
+        /// How it begins.
+        found: String,
+        /// How many bytes it may have.
+        most: usize,
+    },
+    /// A formula that is too long, or holds what no formula does.
+    #[error("the formula {found} cannot be read")]
+    FormulaText {
         /// How it begins.
         found: String,
         /// How many bytes it may have.
@@ -224,6 +232,9 @@ impl ValueProblem {
             ValueProblem::Text { most, .. } => {
                 format!("names, choices and titles are one line of at most {most} bytes without control characters")
             }
+            ValueProblem::FormulaText { most, .. } => {
+                format!("a formula has at most {most} bytes, over as many lines as it needs, and no control characters")
+            }
             ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
@@ -266,9 +277,11 @@ fn missing(key: &str) -> Option<&'static str> {
 
 /// What there is instead of a word; of what is not modelled that it is not, unless it is a slip.
 fn within_scope(word: &str, kind: &str, allowed: &[&'static str]) -> String {
-    let listed = choose(word, kind, allowed);
-    match beyond(word).filter(|_| nearest(word, allowed.iter().copied()).is_none()) {
-        Some(beyond) => format!("{beyond}; {listed}"),
-        None => listed,
+    // A word that is a wish as it stands is nearer to that than to a key that resembles it.
+    let candidates = || allowed.iter().copied();
+    let slips = if is_one(word) { is_slip(word, candidates()) } else { nearest(word, candidates()).is_some() };
+    match beyond(word).filter(|_| !slips) {
+        Some(beyond) => format!("{beyond}; {}", choose("", kind, allowed)),
+        None => choose(word, kind, allowed),
     }
 }

@@ -45,7 +45,8 @@ impl Folders {
             let (package, rest) = rest.split_once('/').ok_or("it names a package and no file")?;
             let root = self.package(Some(package)).ok_or_else(|| {
                 format!(
-                    "the package `{package}` is not the one of the URDF: none of the folders above it has this name"
+                    "the package `{package}` is not the one of the URDF: name the folder of the URDF, or one above it, `{package}`, and let the \
+                     meshes lie in it as the URDF says"
                 )
             })?;
             (root.join(rest), root)

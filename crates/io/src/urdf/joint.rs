@@ -205,6 +205,13 @@ fn read_axis(
     Ok(used)
 }
 
+/// Whether these are whole numbers of degrees of which one makes no sense in rad, as 180: more than three turns to one side.
+fn are_like_degrees(limits: [f64; 2]) -> bool {
+    const THREE_TURNS: f64 = 3.0 * std::f64::consts::TAU;
+    let is_angle = |limit: f64| limit.fract() == 0.0 && limit.abs() <= 360.0;
+    limits.iter().all(|limit| is_angle(*limit)) && limits.iter().any(|limit| limit.abs() > THREE_TURNS)
+}
+
 fn read_limit(
     reading: &mut Reading<'_>,
     limit: Option<Element<'_>>,
@@ -261,6 +268,9 @@ fn read_limit(
     }
     if lower == upper {
         reading.notice(&span, NoticeKind::RangeEmpty { joint: joint(), at: lower });
+    }
+    if motion.kind == MotionKind::Revolute && are_like_degrees([lower, upper]) {
+        reading.notice(&span, NoticeKind::LikeDegrees { joint: joint(), limits: [lower, upper] });
     }
     motion.position_limits = Some([lower, upper]);
 }

@@ -88,6 +88,13 @@ pub enum NoticeKind {
         /// Where.
         at: f64,
     },
+    /// Limits of a revolute joint that are whole degrees rather than rad.
+    LikeDegrees {
+        /// The joint.
+        joint: String,
+        /// As written.
+        limits: [f64; 2],
+    },
     /// An effort or velocity limit of zero.
     LimitZero {
         /// The joint.
@@ -179,6 +186,14 @@ impl fmt::Display for NoticeKind {
             }
             NoticeKind::RangeEmpty { joint, at } => {
                 write!(f, "the limits of joint `{joint}` allow the position {} only", number(*at))
+            }
+            NoticeKind::LikeDegrees { joint, limits: [lower, upper] } => {
+                let (lower_rad, upper_rad) = (rounded(lower.to_radians()), rounded(upper.to_radians()));
+                let [lower, upper, lower_rad, upper_rad] = [*lower, *upper, lower_rad, upper_rad].map(number);
+                write!(
+                    f,
+                    "the limits of joint `{joint}`, {lower} to {upper} rad, look like degrees; in rad those are {lower_rad} to {upper_rad}"
+                )
             }
             NoticeKind::LimitZero { joint, quantity } => {
                 write!(f, "joint `{joint}` has the {quantity} limit 0; it could not move where limits are enforced")

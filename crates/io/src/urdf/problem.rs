@@ -310,6 +310,10 @@ impl Problem for UrdfProblem {
         let text = match self {
             UrdfProblem::Meant { meant, file } => meant.given_as_robot(&shown(file).to_string()),
             UrdfProblem::Doctype => "delete it; a robot needs no entities".to_owned(),
+            UrdfProblem::TooLarge { size: Size::MovingJoints, .. } => {
+                "make those fixed that need not move: every one costs time at every step".to_owned()
+            }
+            UrdfProblem::TooLarge { .. } => "no robot has so many: look whether this is the file that you mean".to_owned(),
             UrdfProblem::Xacro { .. } => "expand with xacro first: `xacro robot.urdf.xacro > robot.urdf`".to_owned(),
             UrdfProblem::NotARobot { .. } => "only URDF is read; convert SDF, MJCF or COLLADA to URDF first".to_owned(),
             UrdfProblem::Name { most, .. } => {

@@ -105,6 +105,8 @@ pub enum Size {
     Nodes,
     /// Namespace declarations.
     Namespaces,
+    /// Attributes of one element.
+    Attributes,
     /// Joints that move.
     MovingJoints,
 }
@@ -115,6 +117,7 @@ impl fmt::Display for Size {
             Size::Bytes => "bytes",
             Size::Nodes => "XML nodes",
             Size::Namespaces => "namespace declarations",
+            Size::Attributes => "attributes of one element",
             Size::MovingJoints => "moving joints",
         })
     }

@@ -18,6 +18,8 @@ const MOST_BYTES: usize = 1 << 26;
 const MOST_NODES: u32 = 1 << 21;
 /// Namespace declarations accepted: the parser's memory can grow with their square.
 const MOST_NAMESPACES: usize = 1000;
+/// Attributes that an element may have: the parser compares each with all others. Those of URDF have at most six.
+const MOST_ATTRIBUTES: usize = 100;
 /// Bytes that a name may have.
 const LONGEST_NAME: usize = 200;
 /// So many mistakes are told beside the first; the rest is counted.
@@ -126,6 +128,10 @@ pub(super) fn parse<'a>(reading: &Reading<'a>) -> Result<Document<'a>, UrdfError
     if text.matches("xmlns").take(MOST_NAMESPACES + 1).count() > MOST_NAMESPACES {
         return too_large(Size::Namespaces, MOST_NAMESPACES);
     }
+    if let Some(at) = crowded(text) {
+        let problem = UrdfProblem::TooLarge { size: Size::Attributes, most: MOST_ATTRIBUTES };
+        return Err(reading.error(at..at + 1, problem));
+    }
     // XML with a mistake stays XML.
     if let Some(meant @ (Meant::Scenario | Meant::Json | Meant::Yaml | Meant::Csv)) = Meant::of(text) {
         let file = reading.source.name().to_owned();
@@ -152,6 +158,39 @@ pub(super) fn parse<'a>(reading: &Reading<'a>) -> Result<Document<'a>, UrdfError
         };
         Err(reading.error(span, problem))
     })
+}
+
+/// Where an element begins that has more attributes than are accepted, found without the parser.
+fn crowded(text: &str) -> Option<usize> {
+    let mut at = 0;
+    while let Some(start) = text[at..].find('<').map(|found| at + found) {
+        let rest = &text[start..];
+        // What stands in these is no element.
+        let closed = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((opens, closes)) = closed.into_iter().find(|(opens, _)| rest.starts_with(opens)) {
+            at = start + opens.len() + rest[opens.len()..].find(closes)? + closes.len();
+            continue;
+        }
+        let (mut quote, mut attributes, mut end) = (None, 0, rest.len());
+        for (offset, byte) in rest.bytes().enumerate().skip(1) {
+            match (quote, byte) {
+                (Some(mark), _) if mark == byte => quote = None,
+                (Some(_), _) => {}
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (None, b'=') => attributes += 1,
+                (None, b'>' | b'<') => {
+                    end = offset;
+                    break;
+                }
+                (None, _) => {}
+            }
+        }
+        if attributes > MOST_ATTRIBUTES {
+            return Some(start);
+        }
+        at = start + end;
+    }
+    None
 }
 
 /// The byte offset of a line and column, both from one.

@@ -7,6 +7,8 @@ use forwardstep_io::scenario::formula::{FormulaProblem, parse_expression, parse_
 use forwardstep_sim::formula::BoundedFormula;
 use proptest::prelude::*;
 
+use super::{changed, read};
+
 fn value(text: &str, t: f64) -> f64 {
     parse_formula(text).unwrap_or_else(|error| panic!("{text}: {error}")).eval(t)
 }
@@ -150,4 +152,18 @@ proptest! {
             Err(fault) => prop_assert!(text.get(fault.at.clone()).is_some(), "{:?} {:?}", text, fault),
         }
     }
+}
+
+#[test]
+fn regress_formulas_are_longer_than_names_and_go_over_lines() {
+    let terms = " + 0.001*sin(t)".repeat(50);
+    let over_lines = terms.replace(" + ", "\n\t+ ");
+    for weight in
+        [format!("\"1{terms}\""), format!("\"\"\"1{over_lines}\"\"\""), format!("\"\"\"\n1{over_lines}\n\"\"\"")]
+    {
+        read(&changed("weight = 1.0", &format!("weight = {weight}"))).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let spaces = format!("weight = \"1{}\"", " ".repeat(10_000));
+    let error = read(&changed("weight = 1.0", &spaces)).unwrap_err().to_string();
+    assert!(error.starts_with("test.toml:28:10: the formula \"1 ") && error.ends_with("cannot be read"), "{error}");
 }

@@ -201,7 +201,7 @@ fn mistakes_about_an_agent_that_leads_are_reported_at_their_place() {
         ("reference.tracking.roots_per_s = [2, 1]\n", "", "roots of the reference dynamics: 0", "roots of its own"),
         ("reference.tracking", "reference.consensus", "12:1: `pilot` cannot have", "`reference.tracking`"),
         ("count = 2", "count = 2\nreference.tracking.roots_per_s = [1]", "8:1: `cart-1` cannot have", "remove it"),
-        ("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"pilot\"]]", "`pilot` leads and hears no agent", ""),
+        ("[\"cart-1\", \"cart-2\"]]", "[\"cart-1\", \"pilot\"]]", "19:31: `pilot` leads and hears no agent", ""),
         ("count = 2", "count = 2\ntarget.formulas = [\"t\"]", "offsets", "leave its `target` out"),
         ("error_below", "disagreement_below", "follows a target or a leader", "error_below"),
     ] {

@@ -193,7 +193,7 @@ fn nothing_is_quoted_of_a_table_that_is_something_else() {
         ("secret:\n  b: 2\n", "YAML"),
         ("format = 2\ntitle = \"secret\"\n", "a scenario"),
     ] {
-        assert_eq!(of_table(text), [format!("edges.csv: this is {what}, and no table")]);
+        assert_eq!(of_table(text), [format!("test.toml:32:18: this is {what}, and no table")]);
     }
     // Of a table with other columns the first is told.
     assert_eq!(of_table("a,b,c\n1,2\n"), ["edges.csv:1:1: unknown column `a`"]);

@@ -163,11 +163,20 @@ fn long_chains_do_not_recurse() {
 #[test]
 fn files_beyond_any_robot_are_refused() {
     let nodes = "<a/>".repeat(1 << 21);
-    assert_eq!(read(&robot(&[&nodes])).unwrap_err(), "r.urdf: more than 2097152 XML nodes");
+    assert_eq!(
+        read(&robot(&[&nodes])).unwrap_err(),
+        "r.urdf: more than 2097152 XML nodes\n  help: no robot has so many: look whether this is the file that you mean"
+    );
     let bytes = " ".repeat(1 << 26);
-    assert_eq!(read(&robot(&[&bytes])).unwrap_err(), "r.urdf: more than 67108864 bytes");
+    assert_eq!(
+        read(&robot(&[&bytes])).unwrap_err(),
+        "r.urdf: more than 67108864 bytes\n  help: no robot has so many: look whether this is the file that you mean"
+    );
     let namespaces = r#"<a xmlns:b="c"/>"#.repeat(1001);
-    assert_eq!(read(&robot(&[&namespaces])).unwrap_err(), "r.urdf: more than 1000 namespace declarations");
+    assert_eq!(
+        read(&robot(&[&namespaces])).unwrap_err(),
+        "r.urdf: more than 1000 namespace declarations\n  help: no robot has so many: look whether this is the file that you mean"
+    );
     let joints: String = (0..1001)
         .map(|k| {
             format!(
@@ -175,7 +184,23 @@ fn files_beyond_any_robot_are_refused() {
             )
         })
         .collect();
-    assert_eq!(read(&robot(&[BASE, &joints])).unwrap_err(), "r.urdf: more than 1000 moving joints");
+    assert_eq!(
+        read(&robot(&[BASE, &joints])).unwrap_err(),
+        "r.urdf: more than 1000 moving joints\n  help: make those fixed that need not move: every one costs time at every step"
+    );
+}
+
+/// The parser compares every attribute of an element with all others.
+#[test]
+fn regress_an_element_with_very_many_attributes_is_refused_at_once() {
+    let attributes = |count: usize| (0..count).map(|k| format!(" a{k}='<=>'")).collect::<String>();
+    let first = "<!-- <a x='1' -->";
+    let error = read(&robot(&[first, &format!("<link name=\"l\"{}/>", attributes(400_000))])).unwrap_err();
+    assert!(error.contains(": more than 100 attributes of one element"), "{error}");
+    // What stands in comments and texts is no attribute, and other elements have their own.
+    let many = format!("<!--{0}--><![CDATA[<a{0}]]><a{1}/><b{1}/>", " x='1'".repeat(200), attributes(60));
+    let error = read(&robot(&[&many])).unwrap_err();
+    assert!(!error.contains("attributes of one element"), "{error}");
 }
 
 #[test]

@@ -15,6 +15,19 @@ fn noted() -> Vec<(String, UrdfOptions, &'static [&'static str])> {
     vec![
         (robot(&[BASE, ARM, &turning]), default(), &[]),
         (with_joint("continuous", z), default(), &[]),
+        // what looks like degrees
+        (
+            with_joint("revolute", &format!("{z}<limit lower=\"-180\" upper=\"90\" effort=\"9\" velocity=\"9\"/>")),
+            default(),
+            &[
+                "r.urdf:4:95: the limits of joint `turn`, -180 to 90 rad, look like degrees; in rad those are -3.14159 to 1.5708",
+            ],
+        ),
+        (
+            with_joint("revolute", &format!("{z}<limit lower=\"-6\" upper=\"12\" effort=\"9\" velocity=\"9\"/>")),
+            default(),
+            &[],
+        ),
         // what does not enter
         (
             robot(&[

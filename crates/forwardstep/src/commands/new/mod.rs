@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use forwardstep::io::robot::{OpenRobotError, open_robot};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::scenario::{
-    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, shipped_scenario,
+    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, called_here,
+    shipped_scenario,
 };
 use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, SHIPPED_ROBOTS, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
@@ -20,9 +21,13 @@ use thiserror::Error;
 
 use self::trial::{Tried, tried};
 use super::ask::Asker;
+use super::patience::{LOOKING, Patience};
 use crate::arguments::{DelayChoice, ExchangeChoice, GraphChoice, NewOptions, count_of_agents, order};
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
+
+/// What is said of trials that take long.
+const TRYING: &str = "still trying with which gains the robots do what they should, which may take a minute; `--untried` writes it without";
 
 /// The schema of scenarios, written beside the first of a folder.
 const SCHEMA: &str = "forwardstep.schema.json";
@@ -77,6 +82,10 @@ impl NewError {
             NewError::Alone => Some("take two or more, or `--leader`, or a spacecraft, which has a target of its own"),
             NewError::Order { .. } => Some("choose another `--order`, or leave it out"),
             NewError::Exchange(_) => Some("leave `--exchange` out"),
+            NewError::Leads(robot) if robot.contains("chain") || robot.contains("feedback") => Some(
+                "chains follow a `target` of their own, see `reference.tracking` and `reference.desired` in `forwardstep schema`; arms, \
+                 masses and ships follow leaders",
+            ),
             NewError::Leads(_) => Some("see `forwardstep new --like vehicles-behind-a-leader`"),
             NewError::LedLate => {
                 Some("see `forwardstep new --like leader-over-late-links`, which comes as near as the delays let it")
@@ -110,11 +119,16 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<S
         None => {
             let template = template(options, kinds)?;
             let read = |template: &Template| read(template, options, kinds);
+            let patience = Patience::with(LOOKING);
             // What is refused is no place to start from, for instance because the robot changed in between.
             read(&template)?;
+            drop(patience);
             match options.untried {
                 true => (template.text(), None),
-                false => tried(template, &read).map(|tried| (tried.template.text(), Some(tried)))?,
+                false => {
+                    let _patience = Patience::with(TRYING);
+                    tried(template, &read).map(|tried| (tried.template.text(), Some(tried)))?
+                }
             }
         }
     };
@@ -138,11 +152,8 @@ fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<S
     Ok(status)
 }
 
-/// Says how the trials went.
+/// Says what the trials came to.
 fn told(tried: &Tried) -> Status {
-    for says in &tried.says {
-        remark(format_args!("tried {says}"));
-    }
     if tried.works {
         return Status::Fine;
     }
@@ -247,7 +258,10 @@ fn robot(name_or_path: &str, scenario: Option<&Path>, kinds: &Kinds) -> Result<R
         OpenRobotError::Unknown { name } => {
             let kinds = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some());
             let all: Vec<&str> = kinds.chain(SHIPPED_ROBOTS.map(|(name, _)| name)).collect();
-            let known = choose(&name.replace('-', "_"), "robots are", &all);
+            let known = match called_here(&name) {
+                Some(here) => format!("{here}; {}", choose("", "robots are", &all)),
+                None => choose(&name.replace('-', "_"), "robots are", &all),
+            };
             complain(&NoRobot { name, known })
         }
         error => complain(&error),

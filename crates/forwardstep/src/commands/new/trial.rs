@@ -8,7 +8,7 @@ use forwardstep::sim::recording::{BreakdownCause, Signal};
 use forwardstep::sim::{Ending, Setup, simulate};
 
 use crate::commands::progress::Bar;
-use crate::console::{Plain, complain};
+use crate::console::{Plain, complain, remark};
 use crate::status::Status;
 
 /// What may be left of the largest gap, and is written as the goal.
@@ -51,8 +51,6 @@ pub(super) struct Tried {
     pub(super) template: Template,
     /// Whether the robots did what they are to do.
     pub(super) works: bool,
-    /// What happened, a sentence each.
-    pub(super) says: Vec<String>,
 }
 
 /// How one run went.
@@ -79,7 +77,7 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
             break;
         }
         let mut candidate = Template { tuning, ..template.clone() };
-        let described = describe(tuning, adapts);
+        let described = describe(Tuning { known: template.robot.known(tuning.known), ..tuning }, adapts);
         loop {
             match run(&read(&candidate)?, &mut effort)? {
                 Went::Well { goal, gap, leaves, exceeds } => {
@@ -96,7 +94,7 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
                         )
                     }));
                     if leaves.is_none() {
-                        return Ok(Tried { template: candidate, works: true, says: says.sentences });
+                        return Ok(Tried { template: candidate, works: true });
                     }
                     second_best.get_or_insert(candidate);
                 }
@@ -116,12 +114,12 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
     }
     Ok(match second_best {
         // Limits of positions are reported, not enforced: the robots agree all the same.
-        Some(template) => Tried { template, works: true, says: says.sentences },
+        Some(template) => Tried { template, works: true },
         None => {
             let mut template = template;
             let usual = says.sentences.first().cloned().unwrap_or_default();
             template.remarks.push(format!("No trial of this did what it should: {usual}"));
-            Tried { template, works: false, says: says.sentences }
+            Tried { template, works: false }
         }
     })
 }
@@ -133,8 +131,10 @@ struct Said {
 }
 
 impl Said {
+    /// Tells it at once: several trials may take a minute.
     fn push(&mut self, sentence: String) {
         if !self.sentences.contains(&sentence) {
+            remark(format_args!("tried {sentence}"));
             self.sentences.push(sentence);
         }
     }

@@ -151,8 +151,8 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
     let columns = &record.outcome.recording.columns;
     let recorded = |signal| columns.iter().any(|column| column.signal == signal);
     let (_, input) = names::input_words(record.setup);
-    let pushed = columns.iter().filter(|column| column.signal == Signal::External);
-    let pushed = names::push_words(record.setup, pushed.map(|column| (column.agent, column.axis)));
+    let external = columns.iter().filter(|column| column.signal == Signal::External);
+    let (external, by) = names::external_words(record.setup, external.map(|column| (column.agent, column.axis)));
     html! {
         section #signals {
             h2 { "Signals" }
@@ -169,7 +169,7 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
                 (card("position", "Positions", "q", ""))
                 @if recorded(Signal::Torque) { (card("torque", input, "τ, after any limit", "")) }
                 @if recorded(Signal::External) {
-                    (card("external", pushed, "τ_ext, by pushes", ""))
+                    (card("external", external, by, ""))
                 }
                 @if recorded(Signal::Reference(0)) {
                     (card("velocity", "Speed and reference", "q̇, and z dashed", ""))

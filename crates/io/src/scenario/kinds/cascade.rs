@@ -14,6 +14,7 @@ use super::{
     At, AxisValues, EstimateStartFile, Fault, InputFolder, LawKind, LawReader, LawTable, LawTemplate, RobotKind,
     RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop, TaskTemplate, fault, filled, length, number_or,
 };
+use crate::scenario::formula_text::FormulaText;
 use crate::scenario::value_problem::ValueProblem;
 use crate::scenario::values::Positive;
 
@@ -24,7 +25,7 @@ use crate::scenario::values::Positive;
 pub struct StrictFeedbackFile {
     /// For each equation what the parameters are multiplied by: a formula in x1, x2, … for each parameter.
     #[schemars(length(min = 1, max = 255))]
-    pub regressors: At<Vec<At<Vec<At<String>>>>>,
+    pub regressors: At<Vec<At<Vec<At<FormulaText>>>>>,
     /// The true parameters.
     #[serde(default)]
     pub parameters: At<Vec<At<f64>>>,
@@ -73,12 +74,12 @@ impl RobotKind for StrictFeedbackFile {
 pub struct PureFeedbackFile {
     /// For each equation what is known: a formula in the states up to the next one.
     #[schemars(length(min = 1, max = 255))]
-    pub known: At<Vec<At<String>>>,
+    pub known: At<Vec<At<FormulaText>>>,
     /// For each equation what the parameters are multiplied by.
     #[schemars(length(min = 1, max = 255))]
-    pub regressors: At<Vec<At<Vec<At<String>>>>>,
+    pub regressors: At<Vec<At<Vec<At<FormulaText>>>>>,
     /// What the input is multiplied by in the last equation. Default: 1.
-    pub psi: Option<At<String>>,
+    pub psi: Option<At<FormulaText>>,
     /// The true parameters.
     #[serde(default)]
     pub parameters: At<Vec<At<f64>>>,
@@ -139,7 +140,7 @@ fn states(order: usize) -> Vec<String> {
 
 fn cascade(
     terms: Result<CascadeTerms, CascadeError>,
-    regressors: &At<Vec<At<Vec<At<String>>>>>,
+    regressors: &At<Vec<At<Vec<At<FormulaText>>>>>,
     parameters: &At<Vec<At<f64>>>,
 ) -> Result<RobotSetup, Fault> {
     let terms = terms.map_err(|error| {
@@ -153,7 +154,7 @@ fn cascade(
     chain_robot(ChainModel::Cascade(Arc::new(terms)), parameters)
 }
 
-fn equations(file: &At<Vec<At<Vec<At<String>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
+fn equations(file: &At<Vec<At<Vec<At<FormulaText>>>>>) -> Result<Vec<Vec<Expression>>, Fault> {
     let rows = filled("regressors", file)?;
     if rows.len() > MOST_STATES {
         return Err(fault(file, ValueProblem::Order { key: "regressors", found: rows.len(), most: MOST_STATES }));

@@ -17,6 +17,7 @@ use super::{
     length, number_or, values,
 };
 use crate::scenario::formula::formula_in;
+use crate::scenario::formula_text::FormulaText;
 use crate::scenario::values::Positive;
 
 /// The states of a chain are numbered in the columns of a run, from 1 to 255. What an order costs, and how many digits its roots leave,
@@ -55,12 +56,12 @@ pub struct ChainFile {
     #[schemars(range(min = 1, max = 255))]
     pub order: At<i64>,
     /// What is known of χ. Default: 0.
-    pub chi: Option<At<String>>,
+    pub chi: Option<At<FormulaText>>,
     /// ψ, which must stay away from zero. Default: 1.
-    pub psi: Option<At<String>>,
+    pub psi: Option<At<FormulaText>>,
     /// What the parameters are multiplied by in χ, a formula for each.
     #[serde(default)]
-    pub regressor: At<Vec<At<String>>>,
+    pub regressor: At<Vec<At<FormulaText>>>,
     /// The true parameters.
     #[serde(default)]
     pub parameters: At<Vec<At<f64>>>,
@@ -127,11 +128,11 @@ pub(super) fn derivatives(order: usize, letter: &str) -> Vec<String> {
     (0..order).map(name).collect()
 }
 
-pub(super) fn optional(text: Option<&At<String>>, names: &[String], otherwise: f64) -> Result<Expression, Fault> {
+pub(super) fn optional(text: Option<&At<FormulaText>>, names: &[String], otherwise: f64) -> Result<Expression, Fault> {
     text.map_or(Ok(Expression::number(otherwise)), |text| formula_in(text, names))
 }
 
-pub(super) fn list(texts: &[At<String>], names: &[String]) -> Result<Vec<Expression>, Fault> {
+pub(super) fn list(texts: &[At<FormulaText>], names: &[String]) -> Result<Vec<Expression>, Fault> {
     texts.iter().map(|text| formula_in(text, names)).collect()
 }
 
@@ -264,7 +265,7 @@ pub struct ImmersionFile {
     pub bounds: Option<EstimateBoundsFile>,
     /// For each parameter a formula whose derivative by the highest derivative of x is the regressor. Default: the regressor
     /// times that derivative, for regressors without it.
-    pub antiderivatives: Option<At<Vec<At<String>>>>,
+    pub antiderivatives: Option<At<Vec<At<FormulaText>>>>,
     /// The run ends where ψ comes closer to zero. Default: 1e-3.
     #[schemars(with = "Option<Positive>")]
     pub floor: Option<At<f64>>,

@@ -13,9 +13,10 @@ use super::{
     At, Fault, InputFolder, LawTemplate, RobotKind, RobotRead, RobotTable, RobotTemplate, Spread, StartReader, Stop,
     TaskTemplate, count, fault, filled, length,
 };
+use crate::scenario::formula_text::FormulaText;
 
 /// A matrix of formulas, row by row.
-type Rows = Vec<At<Vec<At<String>>>>;
+type Rows = Vec<At<Vec<At<FormulaText>>>>;
 
 /// A plant with several axes whose derivative of some order is χ + ψ u, where χ is a vector and ψ a matrix; formulas are in x1, x2, … and their
 /// derivatives dx1, dx2, …, d2x1, ….
@@ -27,7 +28,7 @@ pub struct VectorChainFile {
     pub order: At<i64>,
     /// What is known of χ, a formula for each axis: there are as many axes as formulas.
     #[schemars(length(min = 1))]
-    pub chi: At<Vec<At<String>>>,
+    pub chi: At<Vec<At<FormulaText>>>,
     /// ψ row by row, which must keep an inverse. Default: each input drives its own axis, times 1.
     pub psi: Option<At<Rows>>,
     /// What the parameters are multiplied by in χ: for each axis a formula for each parameter. Default: there are none.

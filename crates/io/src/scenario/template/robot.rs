@@ -86,6 +86,9 @@ impl TaskTemplate {
     }
 }
 
+/// What is known of a robot that rubs, where nothing would be.
+const KNOWN_OF_RUBBING: f64 = 0.8;
+
 /// What is below the file of a robot whose friction is left out.
 const IGNORED: &str = "\nrobot.urdf.friction = \"ignore\"";
 
@@ -114,6 +117,12 @@ impl RobotTemplate {
         };
         self.dry_friction = None;
         Some(self)
+    }
+
+    /// What is known of it at the start where `share` of everything should be: without bounds estimates drift where joints rub, and bounds
+    /// are stated around what is known.
+    pub fn known(&self, share: f64) -> f64 {
+        if self.rubs() && share <= 0.0 { KNOWN_OF_RUBBING } else { share }
     }
 
     /// Whether it rubs.
@@ -149,8 +158,7 @@ impl RobotTemplate {
         let gain = format!("adaptation_gain = {{ bandwidth_per_s = {adaptation_per_s} }}");
         text += &commented(&damping, "K of torque = -K s + Y theta_hat");
         text += &commented(&gain, "how fast estimates change");
-        // Without bounds estimates drift where joints rub, and bounds are stated around what is known.
-        let known = if self.rubs() && known <= 0.0 { 0.8 } else { known };
+        let known = self.known(known);
         text += &match known {
             0.0 => commented("estimate_start = \"zero\"", "nothing is known; or \"true\", { scaled = 0.5 }"),
             1.0 => commented("estimate_start = \"true\"", "all is known; or \"zero\", { scaled = 0.5 }"),

@@ -5,13 +5,14 @@ use serde::Deserialize;
 
 use super::super::super::at::At;
 use super::super::super::fault::Fault;
+use super::super::super::formula_text::FormulaText;
 use super::super::super::network::NetworkReader;
 use super::super::KindTable;
 use super::{DelayKind, DelayPlan};
 
 /// A formula in t, in s, such as "0.2 + 0.1*sin(2*pi*t/3)"; it must be shown not to become negative.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-pub struct FormulaFile(At<String>);
+pub struct FormulaFile(At<FormulaText>);
 
 impl DelayKind for FormulaFile {
     fn table() -> KindTable {

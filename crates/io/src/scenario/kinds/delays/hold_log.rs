@@ -43,7 +43,8 @@ impl DelayKind for HoldLogFile {
             None => {
                 let source = table_text(&self.file, network.folder)?;
                 let end_s = network.end_s;
-                let table = Arc::new(table_of(source.text(), end_s).map_err(|fault| fault.within(&source))?);
+                let table =
+                    Arc::new(table_of(source.text(), end_s).map_err(|fault| fault.within_table(&source, &self.file))?);
                 network.links.held.insert(name.clone(), table.clone());
                 table
             }

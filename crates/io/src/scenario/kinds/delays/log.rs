@@ -37,7 +37,7 @@ impl DelayKind for LogFile {
         }
         let table = table_text(&self.file, network.folder)?;
         let log = log_of(name, table.text(), |offset| table.line_column(offset).0);
-        let log = Arc::new(log.map_err(|fault| fault.within(&table))?);
+        let log = Arc::new(log.map_err(|fault| fault.within_table(&table, &self.file))?);
         network.links.logs.insert(name.clone(), log.clone());
         Ok(DelayPlan::EachLink(log))
     }

@@ -13,6 +13,7 @@ use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 use super::super::super::at::At;
 use super::super::super::fault::{Fault, checked, fault, filled, values};
 use super::super::super::formula::formula_in;
+use super::super::super::formula_text::FormulaText;
 use super::super::super::roots::{RootFile, RootsFile, checked_roots};
 use super::super::super::system_problem::SystemProblem;
 use super::super::super::value_problem::ValueProblem;
@@ -43,7 +44,7 @@ pub struct DesiredFile {
     /// A nonlinear protocol: a formula that is added to the right side, for chains and robots. Its variables are x, dx, d2x, … below the order,
     /// `heard` and `weights`, the sums over the neighbours of weight times position and of weights, xd, dxd, d2xd, … of a target, and t in
     /// s. With it agents may follow targets and hear neighbours. Default: none.
-    pub nonlinear: Option<At<String>>,
+    pub nonlinear: Option<At<FormulaText>>,
     /// Why these dynamics do without s what they are for, exponentially and from everywhere: reported as declared, and tried.
     pub stable_because: Option<At<String>>,
     /// Why they are input-to-state stable from s: reported as declared, and tried.

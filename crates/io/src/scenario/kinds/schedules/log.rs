@@ -32,7 +32,7 @@ impl ScheduleKind for SwitchingLogFile {
         (0..phases.count()).for_each(|phase| phases.unused_dwell(phase));
         let source = table_text(&self.file, phases.network().folder())?;
         let (count, end_s) = (graphs.len(), phases.network().end_s());
-        let log = log_of(source.text(), count, end_s).map_err(|fault| fault.within(&source))?;
+        let log = log_of(source.text(), count, end_s).map_err(|fault| fault.within_table(&source, &self.file))?;
         Ok(Schedule::logged(graphs, log))
     }
 }
