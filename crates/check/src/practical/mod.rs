@@ -191,9 +191,9 @@ pub fn practical(setup: &Setup) -> Practical {
     let setup = designed.as_ref().unwrap_or(setup);
     let limited = (0..setup.agents.len()).any(|agent| limits(setup, agent).is_some());
     let way = if limited || setup.control.is_some() { way(setup) } else { Vec::new() };
+    let whole = WholeLoop::on(setup, &way);
     let margin = SamplingMargin::on(setup, &way);
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
-    let whole = WholeLoop::on(setup, &way);
     // What may grow has no bound.
     let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown);
     let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);

@@ -195,6 +195,13 @@ fn whole(found: &WholeLoop) -> String {
         None => "sample faster, filter less, or let the roots be slower",
     };
     let meaning = match (found.lasting_per_s(), found.start_per_s(), found.amplified()) {
+        _ if let Some((agent, t_s)) = &found.lost => {
+            format!(
+                "by itself {} has run away after {} s, which it would not in continuous time; sample faster",
+                agent.name,
+                rounded(*t_s)
+            )
+        }
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
         }

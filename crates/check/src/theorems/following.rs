@@ -1,9 +1,9 @@
 //! Following a leader: Theorems 8 and 9, Remark 12, one vector to agree on, and an observer of the leader.
 
 use forwardstep_core::controller::Jet;
-use forwardstep_sim::Setup;
 use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::push::Push;
+use forwardstep_sim::{AgentSetup, Setup};
 
 use super::own_targets::how_far;
 use super::swarm;
@@ -240,19 +240,18 @@ fn scale(setup: &Setup, following: &Following) -> f64 {
     let Some(leader) = following.motion() else { return f64::INFINITY };
     let motion = &leader.trajectory;
     let mut jets = vec![Jet::default(); motion.axes()];
-    let mut at = |t_s: f64| {
-        motion.jets(t_s, &mut jets);
-        jets.iter().map(|jet| jet[0]).collect::<Vec<f64>>()
-    };
-    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let begun = at(0.0);
-    let gap = setup.agents.iter().map(|agent| apart(&agent.start.q, &begun)).fold(0.0, f64::max);
-    let looks: Vec<Vec<f64>> = (0..=LOOKS).map(|k| at(setup.time.end_s * k as f64 / LOOKS as f64)).collect();
-    let ends = |axis: usize| {
-        let of_axis = looks.iter().map(|q| q[axis]);
-        of_axis.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
-    };
-    (0..begun.len()).map(ends).map(|[low, high]| high - low).fold(gap, f64::max)
+    motion.jets(0.0, &mut jets);
+    let away =
+        |agent: &AgentSetup| agent.start.q.iter().zip(&jets).map(|(q, jet)| (q - jet[0]).abs()).fold(0.0, f64::max);
+    let gap = setup.agents.iter().map(away).fold(0.0, f64::max);
+    let mut ends: Vec<[f64; 2]> = jets.iter().map(|jet| [jet[0]; 2]).collect();
+    for look in 1..=LOOKS {
+        motion.jets(setup.time.end_s * f64::from(look) / f64::from(LOOKS), &mut jets);
+        for ([low, high], jet) in ends.iter_mut().zip(&jets) {
+            (*low, *high) = (low.min(jet[0]), high.max(jet[0]));
+        }
+    }
+    ends.iter().map(|[low, high]| high - low).fold(gap, f64::max)
 }
 
 /// 1 + b/a for roots −a ± b i, else one.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use forwardstep_check::{Finding, PracticalAnswer, WholeLoop, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
+use forwardstep_sim::drives::JointDrives;
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Adaptive, Exchange, Known, Setup, TimeSpan, VelocitySensor, simulate};
@@ -274,4 +275,36 @@ fn regress_agents_under_other_laws_have_their_network() {
         seen[usize::from(grows)] += 1;
     }
     assert!(seen[0] >= 1 && seen[1] >= 1, "{seen:?}");
+}
+
+/// Joints that are damped so much that a sample holds many of their time constants.
+#[test]
+fn regress_plants_that_are_fast_by_themselves_are_linearised_too() {
+    for damping in [0.0, 30.0, 300.0] {
+        let mut setup = two([1.0, 2.0], 1.0, 10.0);
+        for (k, agent) in setup.agents.iter_mut().enumerate() {
+            *agent = arm(k, &[1.0, 2.0]);
+            let drives = JointDrives { damping: (damping > 0.0).then(|| vec![damping; 2]), ..JointDrives::default() };
+            agent.robot = agent.robot.clone().with_drives(&drives).expect("an arm has joints");
+            agent.start.q = vec![0.3 * k as f64, 0.2];
+            agent.start.dq = vec![0.0; 2];
+            agent.law = Arc::new(Known { damping: Gain::Number(0.3) });
+        }
+        let verdict = WholeLoop::of(&setup).expect("it has numbers");
+        assert!(verdict.answer() < PracticalAnswer::Inadequate && left(&setup) < 0.1, "{damping}: {verdict:?}");
+    }
+}
+
+/// By itself it has no numbers any more after some periods: what is left to look at is not all that there is.
+#[test]
+fn regress_an_agent_that_runs_away_by_itself_is_not_left_out() {
+    let at = |hz: f64| {
+        let psi = Expression::number(1.5);
+        let mut setup = tracking(chain(&psi, 1, true), vec![rest_at(0.2)]);
+        setup.time.end_s = 2000.0;
+        setup.sampled(hz)
+    };
+    let [fast, slow] = [at(20.0), at(0.3)].map(|setup| WholeLoop::of(&setup).expect("it has numbers at its start"));
+    assert_eq!((fast.lost.clone(), fast.answer()), (None, PracticalAnswer::Adequate), "{fast:?}");
+    assert!(slow.lost.is_some() && slow.answer() == PracticalAnswer::Inadequate, "{slow:?}");
 }

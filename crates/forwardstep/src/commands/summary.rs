@@ -7,7 +7,7 @@ use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
 use forwardstep::io::output::{
-    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin, folded,
+    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin,
 };
 use forwardstep::io::shown;
 use forwardstep::sim::reference::Backstepping;
@@ -39,7 +39,7 @@ pub(crate) fn summary(
     let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
     if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
         rows.push(("in words", sentence));
-        rows.extend(folded(advice).into_iter().map(|line| ("to change", line)));
+        rows.extend(advice.into_iter().map(|line| ("to change", line)));
     }
     if let Some(goal) = &record.goal {
         rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));

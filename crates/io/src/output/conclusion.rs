@@ -251,16 +251,25 @@ fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Op
     (rate_per_s < 0.0 && takes_s > metrics.last_t_s? / 4.0).then_some(takes_s)
 }
 
-/// The hypotheses that keep the theorem from speaking, with the change that would let it.
+/// The hypotheses that keep the theorem from speaking, with the changes that would let it: those that say the same of several agents once.
 fn hypotheses(report: &Report) -> Vec<String> {
     const MOST: usize = 3;
-    let broken = report.hypotheses.iter().filter(|hypothesis| !hypothesis.answer().is_fine());
-    let words = broken.map(|hypothesis| {
-        let change = hypothesis.change().map_or_else(String::new, |change| format!("; to make it hold: {change}"));
+    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
+    for hypothesis in report.hypotheses.iter().filter(|hypothesis| !hypothesis.answer().is_fine()) {
         let (answer, requires, name) = (hypothesis.answer().words(), hypothesis.requires(), hypothesis.id.name());
-        format!("{answer} [{name}]: {requires}{change}")
-    });
-    words.take(MOST).collect()
+        let line = format!("{answer} [{name}]: {requires}");
+        let at = lines.iter().position(|(known, _)| *known == line).unwrap_or(lines.len());
+        if at == lines.len() {
+            lines.push((line, Vec::new()));
+        }
+        let changes = &mut lines[at].1;
+        changes.extend(hypothesis.change().filter(|change| !changes.contains(change)));
+    }
+    let words = |(line, changes): (String, Vec<String>)| match &changes[..] {
+        [] => line,
+        changes => format!("{line}; to make it hold: {}", changes.join("; or ")),
+    };
+    lines.into_iter().take(MOST).map(words).collect()
 }
 
 /// The next number of one or two digits and zeros: a quotient or a product of whole numbers, which is written as short as it is.

@@ -6,8 +6,8 @@ use forwardstep_core::LengthError;
 use forwardstep_core::reference::{Derived, Measured, ReferenceOut, SlidingInputs, saturated};
 
 use super::columns::Inputs;
-use super::references::Leads;
 use super::robot_batch::Layout;
+use crate::reference::Dynamics;
 
 /// Signs that are functions of the instant.
 pub(super) struct Layer {
@@ -17,7 +17,7 @@ pub(super) struct Layer {
 
 /// What the signs of everybody are taken of.
 pub(super) fn argument(
-    reference: &dyn Leads,
+    reference: &Dynamics,
     l: Layout,
     x: &[f64],
     inputs: Inputs<'_>,
@@ -40,7 +40,7 @@ pub(super) fn argument(
 
 /// A sign that is a function of the instant and taken of what is heard alone leans on ż or on the rate of y, before the torque.
 pub(super) fn add_sign_terms_now(
-    reference: &dyn Leads,
+    reference: &Dynamics,
     layer: &mut Option<Layer>,
     l: Layout,
     x: &[f64],
@@ -69,7 +69,7 @@ pub(super) fn add_sign_terms_now(
 
 /// z, ż and the rate of the reference state of everybody.
 pub(super) fn evaluate(
-    reference: &dyn Leads,
+    reference: &Dynamics,
     l: Layout,
     (t_s, x): (f64, &[f64]),
     inputs: Inputs<'_>,

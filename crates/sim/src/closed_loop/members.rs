@@ -59,7 +59,7 @@ where
     let balance = setup.solver.balance && !sampled;
     let adaptive = members.iter().all(|member| member.law.adaptation.is_some());
     let (m, p) = (Lagrangian::<f64>::dof(&robot), Lagrangian::<f64>::parameter_count(&robot));
-    let layout = Layout::new([members.len(), m, p, reference.leads().vectors()], adaptive, balance);
+    let layout = Layout::new([members.len(), m, p, reference.vectors()], adaptive, balance);
     // Eight lanes cost about as much as two or three robots one at a time, so idle lanes pay from three robots on.
     let robots: Box<dyn Robots> = match Vectors::of_this_processor().filter(|_| members.len() >= LANES_FROM) {
         Some(vectors) => Box::new(RobotBatch::<R, Lanes<8>>::new(robot, vectors, &members, layout)),

@@ -80,7 +80,7 @@ impl Population {
             row: Vec::new(),
         };
         let output = Output { z: vec![0.0; layout.block()], dz: vec![0.0; layout.block()] };
-        let layer = match reference.leads().sliding() {
+        let layer = match reference.sliding() {
             Some(Sliding { choice: Choice::Layer { width }, .. }) if !sampled => {
                 Some(Layer { width: *width, selection: vec![0.0; layout.block()] })
             }
@@ -103,7 +103,7 @@ impl Population {
                 sampler.drive(inputs.external)
             }
             None => {
-                let (Output { z, dz }, reference) = (&mut self.output, self.reference.leads());
+                let (Output { z, dz }, reference) = (&mut self.output, &self.reference);
                 let d_state = &mut dx[l.reference..l.theta_hat];
                 evaluate(reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
                 add_sign_terms_now(reference, &mut self.layer, l, x, inputs, dz, d_state)?;
@@ -122,7 +122,7 @@ impl Population {
     ) -> Result<(), LengthError> {
         let l = self.layout;
         if self.sampler.is_none() {
-            let (Output { z, dz }, reference) = (&mut self.output, self.reference.leads());
+            let (Output { z, dz }, reference) = (&mut self.output, &self.reference);
             let d_state = &mut self.record.d_reference[..];
             evaluate(reference, l, (t_s, x), inputs, ReferenceOut { z, dz, d_state: &mut *d_state })?;
             add_sign_terms_now(reference, &mut self.layer, l, x, inputs, dz, d_state)?;
@@ -145,7 +145,7 @@ impl Population {
 
     /// Fills the row of the member that was just seen.
     fn fill_row(&mut self, member: usize, x: &[f64]) -> Result<(), LengthError> {
-        let (l, r, reference) = (self.layout, &mut self.record, self.reference.leads());
+        let (l, r, reference) = (self.layout, &mut self.record, &self.reference);
         let (seen, told) = (&r.seen, reference.told());
         let mut slots = r.row.iter_mut();
         let mut put = |value: f64| {
@@ -197,7 +197,7 @@ impl Columns for Population {
     }
 
     fn message(&self) -> usize {
-        let held = self.reference.leads().told().held;
+        let held = self.reference.told().held;
         held.map_or(0, |held| self.layout.reference + held * self.layout.block())
     }
 
@@ -211,7 +211,7 @@ impl Columns for Population {
             x.extend(agents().map(|a| a.start.dq[axis]));
         }
         // The wanted z(0), ż(0), …, for `start` to replace.
-        for r in 0..self.reference.leads().vectors() {
+        for r in 0..self.reference.vectors() {
             for axis in 0..l.m {
                 let default = |a: &AgentSetup| if r == 0 { a.start.dq[axis] } else { 0.0 };
                 x.extend(agents().map(|a| a.start.reference.get(r).map_or(default(a), |z| z[axis])));
@@ -228,7 +228,7 @@ impl Columns for Population {
         let given = x[l.reference..l.theta_hat].to_vec();
         let (measured, state) = x[..l.theta_hat].split_at_mut(l.reference);
         let measured = Measured { q: &measured[..l.dq], dq: &measured[l.dq..] };
-        self.reference.leads().start(l.m, measured, &given, Inputs { degree, sums, external: None }, state)
+        self.reference.start(l.m, measured, &given, Inputs { degree, sums, external: None }, state)
     }
 
     fn rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) {
@@ -311,12 +311,12 @@ impl Columns for Population {
 
     fn selection(&self) -> Option<Range<usize>> {
         let l = self.layout;
-        self.reference.leads().sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
+        self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
     }
 
     fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
         let l = self.layout;
-        match self.reference.leads().sliding().map(|sliding| sliding.derived) {
+        match self.reference.sliding().map(|sliding| sliding.derived) {
             Some(Derived::Acceleration) => told.copy_from_slice(&dx[l.dq..l.reference]),
             Some(Derived::ReferenceAcceleration) => told.copy_from_slice(&self.output.dz),
             _ => {}
@@ -324,13 +324,13 @@ impl Columns for Population {
     }
 
     fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
-        let checked = argument(self.reference.leads(), self.layout, x, inputs, told, e);
+        let checked = argument(&self.reference, self.layout, x, inputs, told, e);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
     fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]) {
         let l = self.layout;
-        if let (Some(sliding), Some(layer)) = (self.reference.leads().sliding(), &mut self.layer) {
+        if let (Some(sliding), Some(layer)) = (self.reference.sliding(), &mut self.layer) {
             layer.selection.copy_from_slice(selection);
             let leaning = l.theta_hat - 2 * l.block();
             for (rate, selection) in dx[leaning..].iter_mut().zip(selection) {
@@ -354,7 +354,7 @@ impl Columns for Population {
     fn pass_kink(&mut self, _: f64, _: &mut [f64]) {}
 
     fn signals(&self) -> Vec<(Signal, usize)> {
-        let (l, reference) = (self.layout, self.reference.leads());
+        let (l, reference) = (self.layout, &self.reference);
         let told = reference.told();
         let mut signals = Vec::new();
         let mut axes = |signal, count| signals.extend((0..count).map(|axis| (signal, axis)));
@@ -366,7 +366,7 @@ impl Columns for Population {
         if told.held.is_some() {
             told.signals.iter().for_each(|held| axes(*held, l.m));
         }
-        if self.reference.leads().sliding().is_some() {
+        if self.reference.sliding().is_some() {
             axes(Signal::Selection, l.m);
         }
         axes(Signal::TrackingError, l.m);
@@ -399,7 +399,7 @@ impl Columns for Population {
             (Signal::Selection, column(l.theta_hat - l.block()))
         } else if state >= l.reference {
             let (block, axis) = (column(l.reference) / l.m, column(l.reference) % l.m);
-            let told = self.reference.leads().told();
+            let told = self.reference.told();
             let held = told.held.and_then(|held| told.signals.get(block.checked_sub(held)?));
             (held.copied().unwrap_or(Signal::Reference(block as u8)), axis)
         } else if state >= l.dq {

@@ -28,7 +28,7 @@ pub fn probe_reference(setup: &Setup) -> Result<Probe, SetupError> {
         let reference = dynamics(&Assembly::new(setup, &[agent]))?;
         // What a filter holds is no z.
         let leads = setup.reference.interface().family != ReferenceFamily::Backstepping;
-        let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.leads().vectors());
+        let free = setup.reference.free_derivatives(own.roots_per_s.len()).min(reference.vectors());
         let free = if leads { free } else { 0 };
         let tried = Tried::new(reference, &mut draws);
         let linear = setup.reference.linear(own, setup.exchange);
@@ -75,7 +75,7 @@ struct Given {
 impl Tried {
     fn new(reference: Dynamics, draws: &mut Draws) -> Self {
         let mut numbers = |length: usize| (0..length).map(|_| 2.0 * draws.unit()).collect::<Vec<f64>>();
-        let (vectors, channels) = (reference.leads().vectors(), reference.leads().told().channels());
+        let (vectors, channels) = (reference.vectors(), reference.told().channels());
         let states = AXES * vectors;
         let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * channels));
         let (state, other) = (numbers(states), numbers(states));
@@ -89,7 +89,7 @@ impl Tried {
         let mut given = Given { z: numbers(AXES), dz: numbers(AXES), rate: numbers(state.len()) };
         let out = ReferenceOut { z: &mut given.z, dz: &mut given.dz, d_state: &mut given.rate };
         let heard = Inputs { degree: &self.degree, sums, external: None };
-        self.reference.leads().evaluate(AXES, Measured { q, dq }, state, (0.0, heard), out)?;
+        self.reference.evaluate(AXES, Measured { q, dq }, state, (0.0, heard), out)?;
         Ok(given)
     }
 
@@ -107,14 +107,14 @@ impl Tried {
         let turned = self.at([&no_q, &no_q, &no_sums, &swapped(other)])?;
         let mut started = origin.clone();
         let heard = Inputs { degree: &self.degree, sums, external: None };
-        self.reference.leads().start(AXES, Measured { q, dq }, state, heard, &mut started)?;
+        self.reference.start(AXES, Measured { q, dq }, state, heard, &mut started)?;
         let begun = self.at([q, dq, sums, &started])?;
 
         let mut pairs: Vec<Failure> = Vec::new();
         let mut equal = |identity, value: &[f64], expected: &[f64]| {
             pairs.extend(value.iter().zip(expected).map(|(value, expected)| (identity, *value, *expected)));
         };
-        let derivatives = self.reference.leads().derivatives() * AXES;
+        let derivatives = self.reference.derivatives() * AXES;
         if derivatives > 0 {
             equal(Identity::Derivatives, &here.z, &state[..AXES]);
             equal(Identity::Derivatives, &here.rate[..derivatives - AXES], &state[AXES..derivatives]);
@@ -122,7 +122,7 @@ impl Tried {
         }
         let changes: Vec<f64> = moved.rate.iter().zip(&here.rate).map(|(moved, here)| moved - here).collect();
         let linear: Vec<f64> = alone.rate.iter().zip(&nothing.rate).map(|(alone, zero)| alone - zero).collect();
-        if self.reference.leads().is_affine() {
+        if self.reference.is_affine() {
             equal(Identity::Affine, &changes, &linear);
             let swapped_back: Vec<f64> =
                 swapped(&turned.rate).iter().zip(&swapped(&nothing.rate)).map(|(turned, zero)| turned - zero).collect();
@@ -148,7 +148,7 @@ impl Tried {
     /// linearity of what it is the derivative of.
     fn linear_form(&self, linear: &LinearReference, here: &Given) -> Result<Vec<Failure>, LengthError> {
         let Tried { q, dq, sums, state, accelerations: [ddq, heard_ddq], .. } = self;
-        let derivatives = self.reference.leads().derivatives();
+        let derivatives = self.reference.derivatives();
         let top = |given: &Given| match derivatives.checked_sub(1) {
             None => given.z.clone(),
             Some(last) => given.rate[last * AXES..(last + 1) * AXES].to_vec(),

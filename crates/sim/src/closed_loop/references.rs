@@ -1,7 +1,5 @@
 //! From reference dynamics as data to those that run. Which dynamics, and what their agents exchange, is known at run time only, and costs
-//! two indirect calls for a whole population.
-
-use std::sync::Arc;
+//! one indirect call for a whole population.
 
 use forwardstep_core::LengthError;
 use forwardstep_core::reference::{
@@ -45,91 +43,65 @@ impl Told {
     }
 }
 
-/// Reference dynamics, whatever their agents exchange; see [`Reference`].
-pub(super) trait Leads {
-    fn told(&self) -> Told;
-    fn agents(&self) -> usize;
-    fn vectors(&self) -> usize;
-    fn derivatives(&self) -> usize;
-    fn sliding(&self) -> Option<&Sliding>;
-    fn is_affine(&self) -> bool;
-    fn evaluate(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        state: &[f64],
-        heard: (f64, Inputs<'_>),
-        out: ReferenceOut<'_>,
-    ) -> Result<(), LengthError>;
-    fn start(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        given: &[f64],
-        heard: Inputs<'_>,
-        state: &mut [f64],
-    ) -> Result<(), LengthError>;
-}
-
-impl<X: Exchange> Leads for Arc<dyn Reference<Exchange = X>> {
-    fn told(&self) -> Told {
-        Told::by::<X>()
-    }
-
-    fn agents(&self) -> usize {
-        Reference::agents(self)
-    }
-
-    fn vectors(&self) -> usize {
-        Reference::vectors(self)
-    }
-
-    fn derivatives(&self) -> usize {
-        Reference::derivatives(self)
-    }
-
-    fn sliding(&self) -> Option<&Sliding> {
-        Reference::sliding(self)
-    }
-
-    fn is_affine(&self) -> bool {
-        Reference::is_affine(self)
-    }
-
-    fn evaluate(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        state: &[f64],
-        (t_s, inputs): (f64, Inputs<'_>),
-        out: ReferenceOut<'_>,
-    ) -> Result<(), LengthError> {
-        let heard = Heard::new(inputs.degree, inputs.sums, axes * Reference::agents(self))?.at(t_s);
-        Reference::evaluate(self, axes, measured, state, heard, out)
-    }
-
-    fn start(
-        &self,
-        axes: usize,
-        measured: Measured<'_>,
-        given: &[f64],
-        inputs: Inputs<'_>,
-        state: &mut [f64],
-    ) -> Result<(), LengthError> {
-        let heard = Heard::new(inputs.degree, inputs.sums, axes * Reference::agents(self))?;
-        Reference::start(self, axes, measured, given, heard, state)
-    }
-}
-
-impl Dynamics {
-    /// Whatever their agents exchange.
-    pub(super) fn leads(&self) -> &dyn Leads {
-        match self {
-            Dynamics::Position(reference) => reference,
-            Dynamics::PositionVelocity(reference) => reference,
-            Dynamics::Estimates(reference) => reference,
-            Dynamics::Composite(reference) => reference,
+/// The value for the reference dynamics in `dynamics`, of any exchange.
+macro_rules! any {
+    ($dynamics:expr, $reference:ident => $value:expr) => {
+        match $dynamics {
+            Dynamics::Position($reference) => $value,
+            Dynamics::PositionVelocity($reference) => $value,
+            Dynamics::Estimates($reference) => $value,
+            Dynamics::Composite($reference) => $value,
         }
+    };
+}
+
+/// What [`Reference`] says and does, whatever the agents exchange.
+impl Dynamics {
+    pub(super) fn told(&self) -> Told {
+        Told::of(self.exchange())
+    }
+
+    pub(super) fn vectors(&self) -> usize {
+        any!(self, reference => reference.vectors())
+    }
+
+    pub(super) fn derivatives(&self) -> usize {
+        any!(self, reference => reference.derivatives())
+    }
+
+    pub(super) fn sliding(&self) -> Option<&Sliding> {
+        any!(self, reference => reference.sliding())
+    }
+
+    pub(super) fn is_affine(&self) -> bool {
+        any!(self, reference => reference.is_affine())
+    }
+
+    /// With what is heard at t.
+    pub(super) fn evaluate(
+        &self,
+        axes: usize,
+        measured: Measured<'_>,
+        state: &[f64],
+        (t_s, Inputs { degree, sums, .. }): (f64, Inputs<'_>),
+        out: ReferenceOut<'_>,
+    ) -> Result<(), LengthError> {
+        let channel = axes * degree.len();
+        any!(self, reference => {
+            reference.evaluate(axes, measured, state, Heard::new(degree, sums, channel)?.at(t_s), out)
+        })
+    }
+
+    pub(super) fn start(
+        &self,
+        axes: usize,
+        measured: Measured<'_>,
+        given: &[f64],
+        Inputs { degree, sums, .. }: Inputs<'_>,
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
+        let channel = axes * degree.len();
+        any!(self, reference => reference.start(axes, measured, given, Heard::new(degree, sums, channel)?, state))
     }
 
     fn exchange(&self) -> setup::Exchange {
@@ -153,11 +125,10 @@ pub(super) fn dynamics(assembly: &Assembly<'_>) -> Result<Dynamics, SetupError> 
     let length = |what, need, got| {
         LengthError::check(what, need, got).map_err(|error| SetupError::ReferenceShape { reference: name, error })
     };
-    let reference = dynamics.leads();
-    length("agents", assembly.agents().len(), reference.agents())?;
-    let (blocks, derivatives) = (reference.vectors(), reference.derivatives());
+    length("agents", assembly.agents().len(), any!(&dynamics, reference => reference.agents()))?;
+    let (blocks, derivatives) = (dynamics.vectors(), dynamics.derivatives());
     length("derivatives of z in the state", derivatives.min(blocks), derivatives)?;
-    if reference.sliding().is_some() && setup.following().is_none() {
+    if dynamics.sliding().is_some() && setup.following().is_none() {
         return Err(SetupError::SignWithoutLeader { reference: name });
     }
     Ok(dynamics)

@@ -11,6 +11,7 @@ const ANGLES: (f64, u32) = (1e-3, 40);
 const ALIKE: f64 = 0.01;
 
 /// x⁺ = J x + B₁ m̄ + B₂ m̄⁺, m = C x.
+#[derive(Clone)]
 pub(super) struct Linear {
     pub(super) period_s: f64,
     /// J.
@@ -53,12 +54,7 @@ impl Linear {
         Some(eigenvalues(&(&self.own - DMatrix::identity(n, n)))?.into_iter().map(|mu| mu + 1.0).collect())
     }
 
-    /// The largest ln|μ|/h by itself.
-    pub(super) fn rate(&self) -> Option<f64> {
-        Some(fastest(&self.multipliers()?, self.period_s))
-    }
-
-    /// The same where m̄ is this share of m.
+    /// The largest ln|μ|/h where m̄ is this share of m.
     pub(super) fn rate_with(&self, share: Complex<f64>) -> Option<f64> {
         let n = self.size();
         let [begin, end] = self.hears.each_ref().map(|hears| complex(&(hears * &self.tells)) * share);
@@ -89,7 +85,8 @@ pub(super) fn rate(away: &DMatrix<f64>, period_s: f64) -> Option<f64> {
     Some(fastest(&eigenvalues(away)?.into_iter().map(|mu| mu + 1.0).collect::<Vec<_>>(), period_s))
 }
 
-fn fastest(multipliers: &[Complex<f64>], period_s: f64) -> f64 {
+/// The largest ln|μ|/h.
+pub(super) fn fastest(multipliers: &[Complex<f64>], period_s: f64) -> f64 {
     libm::log(multipliers.iter().map(|mu| mu.norm()).fold(0.0, f64::max)) / period_s
 }
 

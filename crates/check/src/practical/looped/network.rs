@@ -33,7 +33,7 @@ pub(super) fn degree(setup: &Setup, agent: usize) -> f64 {
     network.schedule.graphs.iter().map(of).fold(0.0, f64::max)
 }
 
-/// The largest ln|μ|/h of all modes of a network of agents that hear others or nobody; `None` where it changes or is too large.
+/// The largest ln|μ|/h of all modes of a network of agents that hear others or none; `None` where it changes or is too large.
 pub(super) fn rate(setup: &Setup, linear: impl Fn(usize) -> Option<Linear>) -> Option<f64> {
     let is_apart = |agent: usize| !is_smooth(&setup.agents[agent]) || setup.tracks(agent);
     if setup.following().is_some() || (0..setup.agents.len()).any(is_apart) {

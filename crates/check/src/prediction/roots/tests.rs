@@ -176,7 +176,7 @@ fn a_large_network_is_decided_by_its_laplacian_if_all_is_uniform() {
     assert_eq!(rate(&setup), Err(NoRate::TooLarge { unknowns: more * 9 }));
 }
 
-/// The others of a network in which one agent hears nobody have the roots of their own designs among those of the network.
+/// The others of a network in which one agent hears no other have the roots of their own designs among those of the network.
 #[test]
 fn regress_roots_that_are_nearly_equal_are_told_apart() {
     for (roots, rightmost) in [

@@ -5,7 +5,6 @@ use forwardstep_sim::recording::{Ending, Signal};
 use maud::{Markup, html};
 
 use super::super::conclusion::Conclusion;
-use super::super::folded::folded;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
@@ -50,7 +49,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
                     @if goes_on { "so far " } @else if !ended { "when it ended early: " }
                     strong.good[reached && (ended || goes_on)].bad[!reached && ended] { (prose(&sentence)) }
                 }
-                @if !goes_on { (advised(&folded(advice))) }
+                @if !goes_on { (advised(&advice)) }
             }
         }
     }
