@@ -1026,8 +1026,7 @@ class Scenario:
 
     # [from, to, phase] of the certificate as numbers; None for who is unknown.
     def triple(self, node):
-        parts = node.each()
-        require(node, len(parts) == 3, "must be [from, to, phase]")
+        parts = require(node, len(node.each()) == 3, "must be [from, to, phase]", node.each())
         return [self.index.get(part.text()) for part in parts[:2]] + [parts[2].count() - 1]
 
     # The edge that such a triple means.
@@ -1040,8 +1039,7 @@ class Scenario:
 def read(path):
     try:
         such(path.stat().st_size <= MOST_BYTES, f"{path} is too large")
-        data = path.read_bytes()
-        return data, data.decode("utf-8")
+        return (data := path.read_bytes()), data.decode("utf-8")
     except (OSError, UnicodeDecodeError) as error: raise Meaningless(f"{path} cannot be read: {error}") from None
 
 # --- Which theorem speaks, and what it asks for
@@ -1087,7 +1085,7 @@ def requirements(scenario):
         (agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"), (flying, "nonzero-thrust"),
         (reference in ("consensus", "pure_integral"), "real-roots"), (reference == "pure_integral" or leading and not turns, "fixed-graph"),
         (reference == "consensus", "common-order" if len({len(a.roots) for a in agents}) == 1 else "own-orders"),
-        (reference == "backstepping", "measured-derivative"), (agreeing and scenario.coupling is not None, "coupling-sector"),
+        (scenario.coupling and such((reference, scenario.exchange()) == ("consensus", "position"), "unlike it", 1), "coupling-sector"),
         (agreeing and scenario.exchange() == "position_velocity", "common-first-root"), (any(a.pushes for a in agents), "pushes-end"),
         (agreeing and any(a.manipulability > 0 for a in agents), "manipulability"), ({"continuous"} in designs, "known-masses"),
         (leading, "bounded-leader sign-gain set-valued-sign shared-design " + ("bounded-delays" if late else "no-delay")),
@@ -1102,7 +1100,7 @@ def requirements(scenario):
         (chains, "defined-terms input-factor " + ("chain-adaptation" if any(a.law != "linearising" for a in chains) else "chain-gains")),
         (any(a.body.get("parameters") for a in adaptive), "bounded-regressors"), (scenario.polynomial, "desired-dynamics"),
         (any(a.pushes and a.robot.endswith("feedback") for a in chains), "matched-disturbance"), (control is not None, "continuous-time"),
-        (any(not a.tracks for a in lagrangian) or tips, "bounded-dynamics"),
+        (any(not a.tracks for a in lagrangian) or tips, "bounded-dynamics"), (reference == "backstepping", "measured-derivative"),
         (any("bounds" in a.settings() for a in agents if a.law != "task_space"), "parameters-within-bounds"),
         (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time")]
@@ -1689,24 +1687,29 @@ def too_small(claim, node, low, high, words):
     zero = claim.id == "bounded-weights"
     settled(node, high < 0 or zero and high == 0, high < INF and (low > 0 or low == 0 and not zero), f"{words} [{said(low)}, {said(high)}]")
 
+# The formula of an edge that some edge follows at all late times: what others do while they are not there says nothing.
+def always(claim, edge):
+    text, graphs = followed(claim, claim.scenario.edge_at(edge)), [claim.scenario.graphs[k] for k in claim.scenario.recurring()]
+    return formula(require(edge, all(text in [followed(claim, e) for e in graph] for graph in graphs), "is not always there", text))
+
 # A time at which a weight is not positive, or a delay is negative.
 @rule("bounded-weights bounded-delays", "below")
 def below(claim, t_s, edge):
     require(t_s, t_s.number() >= 0, "is before the start")
-    too_small(claim, t_s, *enclose(formula(followed(claim, claim.scenario.edge_at(edge))), (t_s.number(),) * 2), "is no such time:")
+    too_small(claim, t_s, *enclose(always(claim, edge), (t_s.number(),) * 2), "is no such time:")
 
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    tree = formula(followed(claim, claim.scenario.edge_at(edge)))
+    tree = always(claim, edge)
     # It exceeds every bound again and again, in one direction or the other.
     if not grows(tree): too_small(claim, edge, *limit(tree), "stays near")
 
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):
-    found = claim.scenario.edge_at(edge)
+    found, stays = claim.scenario.edge_at(edge), claim.scenario.triple(edge)[2] in claim.scenario.recurring()
     rule_, loss = choice(found.delay[1].get("loss", "never"), "loss") if found.delay[0] == "packets" else (None, {})
-    require(edge, rule_ == "random" and loss.get("probability") == 1 and rule_bound(found.delay) is None, "does not lose every packet")
+    require(edge, stays and (rule_, loss.get("probability"), rule_bound(found.delay)) == ("random", 1, None), "does not lose every packet")
 
 # v within ± a else ± a, a tanh(v/a), v/(1 + |v|/a): odd, continuous, never falling, between 0 and v, for any a > 0.
 @rule("coupling-sector", "form")
@@ -1960,19 +1963,19 @@ def entry_away(claim, entry, bound):
     enclosed(claim, bound, quaternion(claim.own)[entry.count() - 1], lambda low, high: low > 0 or high < 0, "holds zero")
     return lasts(bound)
 
-# k λ > β + κ⁴/(2 (β² − α) (β − κ)), κ the smaller root: L − (…/k) 1 of the followers is positive definite.
+# k λ > β + κ⁴/(2 (β² − α) (β − κ)), which grows with κ, the smaller root: L − (`least`/k) 1 of the followers is positive definite.
 @rule("swarm-coupling", "definite")
-def swarm(claim, pivots):
+def swarm(claim, least, pivots):
     scenario, ((small, turn), (large, _)) = claim.scenario, sorted(roots_of(claim.scenario.body))
-    require(claim.proof, scenario.fixed() and not scenario.varying(), "is not so: the Laplacian changes")
-    require(claim.proof, small > 0 and turn == 0 and "alpha" not in scenario.body, "is for real roots that are stated")
-    least = small + large + small**4 / (2 * ((small + large) ** 2 - small * large) * large)
-    followers = [k for k in range(len(scenario.names)) if k != scenario.leader]
-    rows = [[-least / positive(scenario.body.get("coupling"), "coupling") if i == j else Fraction(0) for j in followers] for i in followers]
-    at = {vertex: k for k, vertex in enumerate(followers)}
-    for edge in scenario.graphs[0]:
-        rows[at[edge.to]][at[edge.to]] += edge.weight
-        if edge.source in at: rows[at[edge.to]][at[edge.source]] -= edge.weight
+    require(claim.proof, scenario.fixed() and not scenario.varying() and turn == 0 < small, "is for real roots and a Laplacian that stays")
+    # Roots of α and β are rounded towards the axis, by at most 10⁻³⁰.
+    alpha, beta, kappa = positive(scenario.body.get("alpha", small * large), "alpha"), small + large, small + Fraction(1, 10**30)
+    require(least, least.number() >= beta + kappa**4 / (2 * (beta * beta - alpha) * (beta - kappa)), "is too little for these roots")
+    followers, gain = [k for k in range(len(scenario.names)) if k != scenario.leader], positive(scenario.body.get("coupling"), "coupling")
+    rows = [[-least.number() / gain if i == j else Fraction(0) for j in followers] for i in followers]
+    for to, edge in ((followers.index(edge.to), edge) for edge in scenario.graphs[0]):
+        rows[to][to] += edge.weight
+        if edge.source in followers: rows[to][followers.index(edge.source)] -= edge.weight
     definite(claim.proof, rows, pivots)
 
 # For every chain what encloses the factor of its input in every state, and the floor. Of a matrix its smallest singular value: once rows

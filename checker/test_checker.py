@@ -834,11 +834,14 @@ class FalseProofs(unittest.TestCase):
             self.rejected("formulas", "bounded-delays", "stays near", ends, delay(text))
 
     def test_links_that_lose_every_packet(self):
-        loses = lambda entry: entry.update(  # noqa: E731
-            answer="violated", proof={"kind": "loses-all", "edge": ["mass-1", "mass-2", 1]})
+        # Of the last phase, which stays.
+        in_phase = lambda phase: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "loses-all", "edge": ["mass-1", "mass-2", phase]})
+        loses = in_phase(3)
         link = lambda loss: ('delay.formula_s = "0.2 + 0.1*sin(2*pi*t/3)"',  # noqa: E731
                              f"delay.packets = {{ period_s = 0.25, latency_s = 0.08, seed = 41{loss} }}")
         self.accepted("formulas", "bounded-delays", loses, link(", loss.random = { probability = 1 }"))
+        self.rejected("formulas", "bounded-delays", "does not lose", in_phase(1), link(", loss.random = { probability = 1 }"))
         for loss in ("", ", loss.random = { probability = 0.5 }", ", loss.bursts = { enter = 1, leave = 0.1 }",
                      ", loss.random = { probability = 1, most_consecutive = 3 }"):
             self.rejected("formulas", "bounded-delays", "does not lose every packet", loses, link(loss))
@@ -1750,11 +1753,63 @@ class FalseProofs(unittest.TestCase):
         text = place_of("swarm-tracking").read_text()
         edges = text[text.index("edges = ["):text.index("[goal]")]
         phases = f"[[network.phases]]\ndwell_s = 1\n{edges}\n[[network.phases]]\ndwell_s = 1\nedges = []\n\n"
-        self.rejected("swarm-tracking", "swarm-coupling", "the Laplacian changes", lambda entry: None, (edges, phases))
+        self.rejected("swarm-tracking", "swarm-coupling", "a Laplacian that stays", lambda entry: None, (edges, phases))
         weight = ('["leader", "arm-1"]', '{ from = "leader", to = "arm-1", weight = "1.5 - cos(t)/3" }')
-        self.rejected("swarm-tracking", "swarm-coupling", "the Laplacian changes", lambda entry: None, weight)
-        rounded = ("roots_per_s = [1.0, 1.0]", "alpha = 1\nbeta = 2")
-        self.rejected("swarm-tracking", "swarm-coupling", "is for real roots that are stated", lambda entry: None, rounded)
+        self.rejected("swarm-tracking", "swarm-coupling", "a Laplacian that stays", lambda entry: None, weight)
+
+    def test_what_the_coupling_of_a_swarm_must_exceed(self):
+        """β + κ⁴/(2 (β² − α) (β − κ)), of roots and of coefficients; here 2 + 1/6, and of √0.14 more and less than 1.2."""
+        def states(least):
+            def spoil(entry):
+                entry["proof"]["least"] = least
+                shift = checker.Fraction(least) / 12
+                rows = [[checker.Fraction(0)] * 6 for _ in range(6)]
+                for k in range(6):
+                    rows[k][k] = 2 + (k in (0, 3)) - shift
+                    rows[k][k - 1] = rows[k - 1][k] = checker.Fraction(-1)
+                entry["proof"]["pivots"] = [str(pivot) for pivot in checker.pivots(rows)]
+            return spoil
+
+        name, each, roots = "swarm-tracking", "swarm-coupling", "roots_per_s = [1.0, 1.0]"
+        irrational, kappa = (roots, "alpha = 1.3\nbeta = 2.4"), 1.2 - math.sqrt(0.14)
+        truth = 2.4 + kappa**4 / (2 * (2.4**2 - 1.3) * (2.4 - kappa))
+        for change, least in ((), 2 + 1 / 6), ((irrational,), truth):
+            self.accepted(name, each, states(f"{least + 1e-9:.12f}"), *change)
+            self.rejected(name, each, "is too little for these roots", states(f"{least - 1e-9:.12f}"), *change)
+        self.rejected(name, each, "is for real roots", lambda entry: None, (roots, "alpha = 1.5\nbeta = 2.4"))
+
+    def test_what_a_formula_does_while_its_edge_is_not_there(self):
+        """An edge that is there for a second, or in turns, is no witness of what it would do later; where it stays it is."""
+        name, each = "formulas", "bounded-weights"
+        text = place_of(name).read_text()
+        network = text[text.index("[network]"):]
+        agents = names_of(tomllib.loads(text))
+        ring = [[a, b] for a, b in zip(agents, agents[1:] + agents[:1])]
+        plain = f"edges = {json.dumps(ring)}\n"
+
+        def phases(first, how):
+            edges = f"edges = [{{ from = {json.dumps(ring[0][0])}, to = {json.dumps(ring[0][1])}, {first} }}]\n"
+            return f'[network]\nswitching = "{how}"\n[[network.phases]]\ndwell_s = 1\n{edges}[[network.phases]]\n' + (
+                "" if how == "once" else "dwell_s = 1\n") + plain
+
+        def staying(first):
+            formula = f"{{ from = {json.dumps(ring[0][0])}, to = {json.dumps(ring[0][1])}, {first} }}"
+            return f"[network]\nedges = [{formula}, {json.dumps(ring[1:])[1:-1]}]\n"
+
+        def violated(kind, **more):
+            return lambda entry: entry.update(answer="violated", proof={"kind": kind, "edge": [*ring[0], 1], **more})
+
+        for first, hypothesis, claim in (
+                ('weight = "exp(-t)"', each, violated("limit")), ('weight = "1 + t"', each, violated("limit")),
+                ('weight = "1.2 - t"', each, violated("below", t_s="2")), ('delay.formula_s = "t"', "bounded-delays", violated("limit"))):
+            for how in ("once", "repeat"):
+                self.rejected(name, hypothesis, "is not always there", claim, (network, phases(first, how)))
+            self.accepted(name, hypothesis, claim, (network, staying(first)))
+
+    def test_couplings_of_no_theorem(self):
+        saturated = ("[network]", "[network]\ncoupling.saturated = 0.01\n")
+        for name, each in (("theorem-8", "sign-gain"), ("theorem-2", "real-roots"), ("remark-12", "sign-gain")):
+            self.rejected(name, each, "unlike it", lambda entry: None, saturated)
 
     def test_trees_of_every_phase(self):
         name, each = "theorem-3-24-order-4", "spanning-tree"

@@ -8,13 +8,24 @@ use forwardstep_core::expression::Interval;
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Basis, Delay, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
-use forwardstep_sim::graph::Weight;
+use forwardstep_sim::graph::{Edge, Weight};
 
 use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
 
 /// The delays of links that are used.
 fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
     setup.network.used_delays().filter_map(|index| setup.network.delays.get(index))
+}
+
+/// Whether there is such an edge at all late times: what a formula does while no edge follows it says nothing.
+pub(crate) fn lasts(setup: &Setup, is_it: impl Fn(&Edge) -> bool) -> bool {
+    setup.network.schedule.recurring_graphs().iter().all(|graph| graph.iter().any(&is_it))
+}
+
+/// The delays of which some link has each at all late times.
+fn lasting_delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
+    let those = setup.network.used_delays().filter(|index| lasts(setup, |edge| edge.delay == *index));
+    those.filter_map(|index| setup.network.delays.get(index))
 }
 
 pub(crate) fn bounded_delays(setup: &Setup) -> Hypothesis {
@@ -28,7 +39,7 @@ fn known_delays(setup: &Setup) -> LinkEvidence {
     if let Some((words, fault)) = delays(setup).find_map(refuted) {
         return LinkEvidence::RefutedDelay { words, fault };
     }
-    if let Some(refuted) = delays(setup).find_map(|delay| delay.known().refuted) {
+    if let Some(refuted) = lasting_delays(setup).find_map(|delay| delay.known().refuted) {
         return LinkEvidence::RefutedBound(refuted);
     }
     let (mut bound_s, mut oldest_s): (f64, f64) = (0.0, 0.0);
@@ -88,22 +99,19 @@ pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
 
 /// The formulas that weights of edges follow, each once, without those that are constant.
 pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
-    let network = &setup.network;
-    let mut used = vec![false; network.weights.len()];
-    for edge in network.schedule.graphs.iter().flatten() {
-        match edge.weight {
-            Weight::Constant(_) => {}
-            Weight::Formula(index) => used.get_mut(index).into_iter().for_each(|used| *used = true),
-        }
-    }
-    let varies = |formula: &BoundedFormula| formula.constant().is_none();
-    network
-        .weights
-        .iter()
-        .zip(used)
-        .filter(|(_, used)| *used)
-        .map(|(formula, _)| formula)
-        .filter(move |one| varies(one))
+    weights(setup, |is_it| setup.network.schedule.graphs.iter().flatten().any(is_it))
+}
+
+/// Those of which some edge follows each at all late times.
+fn lasting_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
+    weights(setup, |is_it| lasts(setup, is_it))
+}
+
+/// Formulas that vary, and are used as this says of the edges that follow one.
+fn weights(setup: &Setup, is_used: impl Fn(&dyn Fn(&Edge) -> bool) -> bool) -> impl Iterator<Item = &BoundedFormula> {
+    let varying = setup.network.weights.iter().enumerate().filter(|(_, formula)| formula.constant().is_none());
+    let used = varying.filter(move |(index, _)| is_used(&|edge| edge.weight == Weight::Formula(*index)));
+    used.map(|(_, formula)| formula)
 }
 
 /// What a nonlinear coupling must be like for the argument of Theorem 3.
@@ -120,7 +128,7 @@ fn hull(setup: &Setup, of: impl Fn(&BoundedFormula) -> Interval) -> Option<Inter
 /// Nothing to say where weights are constant.
 pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
     let (on_run, for_ever) = (hull(setup, BoundedFormula::within)?, hull(setup, |one| one.for_ever().within)?);
-    if let Some(evidence) = varying_weights(setup).find_map(refuted_weight) {
+    if let Some(evidence) = lasting_weights(setup).find_map(refuted_weight) {
         return Some(Hypothesis::new(Id::BoundedWeights, evidence));
     }
     let bounded_for_ever = for_ever.low > 0.0 && for_ever.high.is_finite();

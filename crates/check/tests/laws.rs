@@ -17,8 +17,8 @@ use forwardstep_sim::reference::Consensus;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
-    AgentSetup, ChainModel, Ending, Exchange, SampledLoop, Setup, Signal, SpacecraftModel, ThrustKind, sampled_loop,
-    simulate,
+    AgentSetup, ChainModel, Ending, Exchange, Periods, SampledLoop, Setup, Signal, SpacecraftModel, ThrustKind,
+    sampled_loop, simulate,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -380,7 +380,7 @@ fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argum
 
 /// The multipliers of the first agent's period.
 fn multipliers(setup: &Setup) -> Vec<nalgebra::Complex<f64>> {
-    let SampledLoop { size, own, .. } = sampled_loop(setup, 0, 0.0, 0).unwrap().unwrap();
+    let SampledLoop { size, own, .. } = sampled_loop(setup, 0, 0.0, Periods::FIRST).unwrap().unwrap();
     nalgebra::DMatrix::from_row_slice(size, size, &own).complex_eigenvalues().iter().copied().collect()
 }
 
@@ -469,9 +469,9 @@ fn of_several_agents_the_worst_linearised_period_is_shown() {
 #[test]
 fn a_period_is_linearised_of_few_of_many() {
     let one = tracking(blind_mass(1.0, 2.0), vec![rest_at(0.2)]);
-    assert_eq!(sampled_loop(&one, 0, 0.0, 0).unwrap(), None, "control is continuous");
+    assert_eq!(sampled_loop(&one, 0, 0.0, Periods::FIRST).unwrap(), None, "control is continuous");
     let sampled = one.sampled(20.0);
-    assert_eq!(sampled_loop(&sampled, 1, 0.0, 0).unwrap(), None, "there is no such agent");
+    assert_eq!(sampled_loop(&sampled, 1, 0.0, Periods::FIRST).unwrap(), None, "there is no such agent");
     let mut many = sampled.clone();
     let said = |many: &Setup| practical(many).findings[0].because();
     many.agents = (0..10).map(|_| sampled.agents[0].clone()).collect();

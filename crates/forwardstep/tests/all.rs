@@ -9,6 +9,7 @@ mod check;
 mod cli;
 mod compare;
 mod completions;
+mod deployed;
 mod documents;
 mod examples;
 mod falsify;

@@ -368,7 +368,8 @@ fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
     assert!(matches!(&inside.subject, Subject::Agent(agent) if (agent.index, &*agent.name) == (0, "arm")));
     let outside = found(0.9);
     assert_eq!(outside.answer(), Answer::Violated);
-    let Evidence::Kind(KindEvidence::ParameterOutside { agent, name: Some(name), value }) = &outside.evidence else {
+    let Evidence::Kind(KindEvidence::ParameterOutside { agent, name: Some(name), value, .. }) = &outside.evidence
+    else {
         panic!("{outside:?}")
     };
     assert_eq!(*value, 1.0);

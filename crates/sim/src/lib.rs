@@ -43,8 +43,8 @@ pub use agents::{
 };
 pub use build::run;
 pub use closed_loop::{
-    Assembly, Block, Energy, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes, reference_dynamics,
-    sampled_loop, validate,
+    Assembly, Block, Energy, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes,
+    reference_dynamics, sampled_loop, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};
 pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders, simulate_jumps};

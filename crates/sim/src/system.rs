@@ -2,7 +2,7 @@
 //!
 //! A [`Robot`] is a plant as data, a [`Law`] what controls it. Each says as data what it is and can do, [`RobotInterface`] and
 //! [`Interface`]. Features (pushes, targets, offsets, sampling, verdicts, tables) ask these; none of them asks what kind of system
-//! it has before it. No method has a default body, and what an interface does not state, its system cannot do: a feature that
+//! it has before it. No method has a default body but those about estimates, which are none, and what an interface does not state, its system cannot do: a feature that
 //! asks for it is refused.
 
 use std::any::Any;
@@ -171,6 +171,12 @@ pub trait Law: Any + Debug + Send + Sync {
 
     /// Bounds that its estimate of the robot's parameters is kept within. Default: none.
     fn kept_within(&self) -> Option<ParameterBounds> {
+        None
+    }
+
+    /// The same law with an estimate that starts at these parameters of its robot, and everything else that it estimates of `robot` right; nothing
+    /// where it estimates none. Default: none.
+    fn with_estimate(&self, _theta: &[f64], _robot: &RobotSetup) -> Option<Arc<dyn Law>> {
         None
     }
 

@@ -17,6 +17,7 @@ use super::limit::{Limit, limit};
 use super::producers::Claim;
 use super::proof::{Enclosure, GivenAge, Proof};
 use crate::Answer;
+use crate::links::lasts;
 
 /// Times at which a formula is looked at for a witness, and how many of them there are in a second.
 const LOOKS: u32 = 100_000;
@@ -60,7 +61,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 
 /// A delay that exceeds every bound or becomes negative, or a link that loses every packet.
 fn late_for_ever(setup: &Setup) -> Option<Proof> {
-    edges(setup).find_map(|(phase, edge)| {
+    edges(setup).filter(|(_, edge)| lasts(setup, |other| other.delay == edge.delay)).find_map(|(phase, edge)| {
         let (delay, at) = (setup.network.delays.get(edge.delay)?, (edge.from, edge.to, phase));
         if delay.known().refuted == Some(Refuted::EveryPacketLost) {
             return Some(Proof::LosesAll(at));
@@ -78,7 +79,7 @@ fn late_for_ever(setup: &Setup) -> Option<Proof> {
 
 /// A weight that comes to zero, becomes negative, or grows without bound.
 fn fading(setup: &Setup) -> Option<Proof> {
-    edges(setup).find_map(|(phase, edge)| {
+    edges(setup).filter(|(_, edge)| lasts(setup, |other| other.weight == edge.weight)).find_map(|(phase, edge)| {
         let Weight::Formula(index) = edge.weight else { return None };
         let (formula, at) = (setup.network.weights.get(index)?.formula(), (edge.from, edge.to, phase));
         match limit(formula) {

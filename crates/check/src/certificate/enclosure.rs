@@ -10,7 +10,7 @@ use super::slopes::{on_piece, slope};
 /// How many pieces are tried.
 const CELLS: [usize; 6] = [1, 8, 32, 128, 512, 2048];
 /// Times from which one piece takes all that is left of a formula.
-const STARTS_S: [u32; 3] = [1, 16, 1024];
+const STARTS_S: [u32; 5] = [1, 16, 64, 256, 1024];
 /// Room, as a part, for the ends of pieces, which are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
 

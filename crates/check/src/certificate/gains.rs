@@ -7,8 +7,10 @@ use forwardstep_sim::{Adaptive, AgentSetup, AttitudeLaw, Known, PassivityFilterL
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
+use super::exact::above;
 use super::producers::Claim;
 use super::proof::{Matrix, Proof};
+use crate::theorems::swarm;
 use crate::{Answer, Id};
 
 /// Rows of a matrix that is eliminated in rational numbers.
@@ -77,12 +79,8 @@ pub(super) fn swarm(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let following = setup.following().filter(|_| claim.answer == Answer::Holds)?;
     let FollowingDesign::Swarm { coupling } = following.design else { return None };
     let edges = setup.network.schedule.constant_graph()?;
-    // α and β are products and sums of roots as they are written; the roots follow from them exactly.
-    let (alpha, beta) = (Number::written(following.alpha), Number::written(following.beta));
-    let (small, large) = roots(&alpha, &beta)?;
-    let square = &small * &small;
-    let two = BigRational::from_integer(2.into());
-    let least = &beta + &square * &square / (two * (&beta * &beta - &alpha) * large);
+    // Rounded upwards by more than α and β were when they were made of roots.
+    let least = above(swarm::least(following.alpha, following.beta)?);
     let followers: Vec<usize> = (0..setup.network.agents).filter(|vertex| setup.leader() != Some(*vertex)).collect();
     let n = followers.len();
     let mut rows = vec![BigRational::zero(); n * n];
@@ -97,18 +95,5 @@ pub(super) fn swarm(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             rows[to * n + from] -= weight;
         }
     }
-    pivots(rows).map(Proof::Laplacian)
-}
-
-/// The roots κ of κ² − β κ + α, if they are rational.
-fn roots(alpha: &BigRational, beta: &BigRational) -> Option<(BigRational, BigRational)> {
-    let four = BigRational::from_integer(4.into());
-    let square = beta * beta - four * alpha;
-    if square.is_negative() {
-        return None;
-    }
-    let (top, bottom) = (square.numer().sqrt(), square.denom().sqrt());
-    let root = BigRational::new(top, bottom);
-    let two = BigRational::from_integer(2.into());
-    (&root * &root == square).then(|| ((beta - &root) / &two, (beta + &root) / &two))
+    Some(Proof::Laplacian { pivots: pivots(rows)?, least })
 }

@@ -70,7 +70,12 @@ pub enum Proof {
     /// Gains are positive definite; matrices by their pivots.
     Definite(Vec<Matrix>),
     /// The pivots of the shifted Laplacian of the followers.
-    Laplacian(Vec<BigRational>),
+    Laplacian {
+        /// What k λ exceeds, and at least what the derivation asks for.
+        least: BigRational,
+        /// Those of L − (`least`/k) 1.
+        pivots: Vec<BigRational>,
+    },
     /// Derivatives are bounded up to an order, as far as stretches of formulas tell.
     Derivatives(usize, Range),
     /// What drives a leader keeps within these, axis by axis.

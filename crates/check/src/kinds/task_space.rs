@@ -179,14 +179,13 @@ fn lengths_within_bounds(setup: &Setup, index: usize, law: &TaskSpaceLaw) -> Opt
     let agent = &setup.agents[index];
     let bounds = law.bounds.as_ref()?;
     let theta = law.tip.parameters(&*agent.robot.kind)?;
-    let inside = |k: usize| match (bounds.lower.get(k), bounds.upper.get(k)) {
-        (Some(low), Some(high)) => *low <= theta[k] && theta[k] <= *high,
-        _ => false,
-    };
-    let outside = (0..theta.len()).find(|k| !inside(*k));
-    Some(outside.map_or(KindEvidence::ParametersInside, |k| KindEvidence::ParameterOutside {
+    let ends = bounds.lower.iter().zip(&bounds.upper).map(|(low, high)| [*low, *high]);
+    let mut own = theta.iter().zip(ends).enumerate();
+    let outside = own.find(|(_, (value, [low, high]))| !(low <= *value && *value <= high));
+    Some(outside.map_or(KindEvidence::ParametersInside, |(k, (value, bounds))| KindEvidence::ParameterOutside {
         agent: Named::of(setup, index),
         name: law.kinematic_names.get(k).cloned(),
-        value: theta[k],
+        value: *value,
+        bounds,
     }))
 }

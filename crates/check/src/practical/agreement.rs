@@ -3,7 +3,8 @@
 //! Not from the paper, derived for this software. On an axis a, s_a² ≤ (K⁻¹)_aa sᵀKs, and the axes of a linear reference do not mix. So where
 //! the mean of Σ sᵀKs is at most x² and c_a is the largest (K⁻¹)_aa of any agent, rms |s_a| ≤ x √c_a, and the gains apply axis by axis.
 //! It is what s adds to the course of s ≡ 0 from the same z(0); messages of before t = 0 count as if s(0) had been there, and what noise does
-//! to the reference by itself is left out.
+//! to the reference by itself is left out. So is, where controllers sample, what that does to the reference with s ≡ 0: it holds what it hears
+//! over a period, which adds errors of the order of the period for as long as agents move.
 
 use forwardstep_sim::{AxisUnit, Setup, VelocitySensor};
 
@@ -21,6 +22,8 @@ pub struct AgreementBound {
     pub axes: Option<[AxisBound; 2]>,
     /// Whether something besides the start and pushes is in the bound, so that it is one to be expected.
     pub expected: bool,
+    /// Whether controllers sample, and with them the references.
+    pub sampled: bool,
     /// Whether velocities are measured under digital control, so that an error of them may stay.
     pub measured: bool,
 }
@@ -57,6 +60,7 @@ impl AgreementBound {
             gains,
             axes,
             expected: power.is_some_and(PowerBound::is_expected),
+            sampled: setup.control.is_some(),
             measured: sensors.is_some_and(|sensors| sensors.velocity == VelocitySensor::Measured),
         })
     }

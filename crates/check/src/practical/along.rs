@@ -7,19 +7,21 @@ use std::collections::HashMap;
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::{Evaluator, Setup};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
 use super::led::Led;
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
-use super::power::{PowerBound, held_w_of, is_fed, noise_w_of, pushed_w, steps_w_of};
+use super::power::{PowerBound, between_w_of, held_w_of, is_fed, noise_w_of, pushed_w, steps_w_of};
 use super::rates::{Gains, Rates};
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
 /// States that are looked at in all, spread evenly over the rows, but two of every agent at least.
 const MOST: usize = 3000;
+/// A time that is a whole number of periods, give or take rounding, is that number.
+const SLACK_PERIODS: f64 = 1e-6;
 
 /// What was found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,7 +36,7 @@ pub struct Along {
     pub states: usize,
 }
 
-/// The mean of Σ sᵀKs over the rows of a run, beside what it cannot exceed.
+/// The mean of Σ sᵀKs over the rows of a run, and over the periods that they stand in, beside what it cannot exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerReached {
     /// The mean, W.
@@ -124,7 +126,7 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
     let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
     let span_s = last_s - first_s;
     let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
-    let (mut noise_w, mut steps_w, mut held_w, mut friction_w) = (0.0, 0.0, 0.0, 0.0);
+    let (mut noise_w, mut steps_w, mut held_w, mut between_w, mut friction_w) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let looked = self::rows(rows, setup.agents.len());
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
@@ -135,7 +137,11 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         for row in 0..rows {
             let signal = |signal| columns.at(agent, signal, axes, row).map(DVector::from_vec);
             let s = signal(Signal::TrackingError)?;
-            mean_w += s.dot(&(&gains.damping * &s)) / rows as f64;
+            let moves = setup.control.as_ref().zip(signal(Signal::Reference(1)));
+            mean_w += moves.map_or_else(
+                || s.dot(&(&gains.damping * &s)),
+                |(control, dz)| over_period(&gains.damping, &s, &dz, t_s[row], 1.0 / control.sample_hz),
+            ) / rows as f64;
             own_w += signal(Signal::External).map_or(0.0, |d| d.dot(&(&compliance * &d)) / rows as f64);
         }
         // Dry friction is a part of what was recorded, and no push.
@@ -155,14 +161,27 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         let way: Vec<&Led> = way.iter().collect();
         let own = &setup.agents[agent];
         held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;
+        between_w += setup.control.as_ref().map_or(0.0, |it| between_w_of(it, &gains, &way, span_s));
         agents += 1;
     }
     let parts = |(start_j, push_w): (f64, f64)| {
         let start_w = start_j / span_s;
-        PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, friction_w, sigma, mean_w: f64::NAN }
+        let mean_w = f64::NAN;
+        PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, between_w, friction_w, sigma, mean_w }
             .worked_out()
     };
     (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(parts) })
+}
+
+/// The mean of sᵀKs over the period of a row, which begins with a sample: z is held until the next one, and q̇ goes on as the reference does.
+/// Rows may all stand at samples, where s is what is left of it.
+fn over_period(damping: &DMatrix<f64>, s: &DVector<f64>, dz: &DVector<f64>, t_s: f64, period_s: f64) -> f64 {
+    // A row at a sample is one just after it, whatever rounding makes of its time.
+    let periods = t_s / period_s;
+    let whole = (periods + SLACK_PERIODS).floor();
+    let since_s = ((periods - whole) * period_s).max(0.0);
+    let middle = s + dz * (0.5 * period_s - since_s);
+    middle.dot(&(damping * &middle)) + dz.dot(&(damping * dz)) * period_s * period_s / 12.0
 }
 
 /// Rows that are looked at: the first, the last and others between them.

@@ -43,7 +43,7 @@ pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
 pub use loads::StaticLoad;
-pub use looped::{LoopAt, LoopRate, WholeLoop};
+pub use looped::{LoopAt, LoopRate, Trial, WholeLoop};
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
 pub(crate) use power::{is_fed, start_energy_j};
@@ -148,6 +148,7 @@ impl Finding {
                         .flat_map(|[own, ideal]| [("decay_per_s", own), ("ideal_decay_per_s", ideal)]),
                 );
                 all.extend(found.lasting_per_s().map(|rate| ("growth_per_s", rate)));
+                all.extend(found.trial.lost_s.map(|t_s| ("lost_s", t_s)));
                 all
             }
             Finding::TrackingPower(bound) => vec![
@@ -157,6 +158,7 @@ impl Finding {
                 ("noise_w", bound.noise_w),
                 ("steps_w", bound.steps_w),
                 ("held_w", bound.held_w),
+                ("between_w", bound.between_w),
                 ("friction_w", bound.friction_w),
                 ("span_s", bound.span_s),
             ],

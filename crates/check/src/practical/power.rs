@@ -20,6 +20,9 @@
 //! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
 //! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest.
 //!
+//! All of this is s at the samples. Between them z is held and q̇ moves on, so that s gains ż times the time since the sample: a saw tooth whose
+//! mean square is ⅓ h² żᵀKż, and which adds at most its root to that of the mean of sᵀKs.
+//!
 //! A velocity that is measured with an error n makes d = −K n, so that D² is the mean of nᵀKn: tr K times the mean square of an entry. That
 //! of a step Δ of rounding is Δ²/4, since a robot that hardly moves stays within one step; of positions, whose differences count, Δ²/12. Filtered differences of positions, a = e^(−ωh), with an error e of variance e² at every sample,
 //! have n = (1 − a) Σ_j aʲ (e_{k−j} − e_{k−j−1})/h, whose mean square is 2 e² (1 − a)²/(h² (1 + a)). n enters the adaptation too, as −nᵀYΔϑ,
@@ -63,6 +66,8 @@ pub struct PowerBound {
     pub steps_w: f64,
     /// D² of torques that are held and velocities that are filtered while robots move as their references ask, W.
     pub held_w: f64,
+    /// The mean of sᵀKs of what s gains from one sample to the next while references move, W.
+    pub between_w: f64,
     /// E, which dry friction feeds at most, W.
     pub friction_w: f64,
     /// σ; zero in continuous time.
@@ -89,7 +94,7 @@ impl PowerBound {
             return None;
         }
         let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
-        let (mut noise_w, mut steps_w, mut held_w) = (0.0, 0.0, 0.0);
+        let (mut noise_w, mut steps_w, mut held_w, mut between_w) = (0.0, 0.0, 0.0, 0.0);
         let span_s = setup.time.end_s;
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
@@ -101,6 +106,7 @@ impl PowerBound {
             let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
             held_w +=
                 setup.control.as_ref().map_or(Some(0.0), |control| held_w_of(control, agent, &gains, &own, span_s))?;
+            between_w += setup.control.as_ref().map_or(0.0, |control| between_w_of(control, &gains, &own, span_s));
             agents += 1;
         }
         let sigma = if setup.control.is_some() { margin?.worst.sigma } else { 0.0 };
@@ -113,6 +119,7 @@ impl PowerBound {
             noise_w,
             steps_w,
             held_w,
+            between_w,
             friction_w,
             sigma,
             mean_w: f64::NAN,
@@ -129,7 +136,9 @@ impl PowerBound {
     /// is zero: then what is left out is all there is.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
         let drive = self.push_w.sqrt() + self.noise_w.sqrt() + self.steps_w.sqrt() + self.held_w.sqrt();
-        let mean_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
+        let sampled_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
+        let root = sampled_w.sqrt() + self.between_w.sqrt();
+        let mean_w = root * root;
         (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
     }
 }
@@ -182,22 +191,33 @@ pub(super) fn held_w_of(
         let theta = DVector::from_column_slice(&agent.robot.theta);
         Some(DMatrix::from_row_slice(state.q.len(), theta.len(), &found.regressor) * theta)
     };
-    let (mut held, mut lagging) = (0.0, 0.0);
+    let mut held = 0.0;
     for pair in way.windows(2) {
         let [one, next] = pair else { continue };
         let took_s = next.t_s - one.t_s;
         let Some((from, to)) = asked(one).zip(asked(next)).filter(|_| took_s > 0.0) else { continue };
         let rate = (to - from) / took_s;
         held += took_s * since * rate.dot(&(&compliance * &rate));
-        // A transient may be shorter than what is between two states: the larger of both ends.
-        let lag = |state: &Led| {
-            let ddq = DVector::from_column_slice(&state.dz);
-            ddq.dot(&(&gains.damping * &ddq))
-        };
-        lagging += took_s * lag_s * lag_s * lag(one).max(lag(next));
     }
-    let drive = (held / span_s).sqrt() + (lagging / span_s).sqrt();
+    let lagging = lag_s * lag_s * mean_acceleration_w_s2(gains, way, span_s);
+    let drive = (held / span_s).sqrt() + lagging.sqrt();
     Some(drive * drive)
+}
+
+/// The mean of sᵀKs of what s gains from one sample to the next along these states of an agent, W.
+pub(super) fn between_w_of(control: &Control, gains: &Gains, way: &[&Led], span_s: f64) -> f64 {
+    mean_acceleration_w_s2(gains, way, span_s) / (3.0 * control.sample_hz * control.sample_hz)
+}
+
+/// The mean of żᵀKż over a span, in W/s².
+fn mean_acceleration_w_s2(gains: &Gains, way: &[&Led], span_s: f64) -> f64 {
+    let of = |state: &Led| {
+        let dz = DVector::from_column_slice(&state.dz);
+        dz.dot(&(&gains.damping * &dz))
+    };
+    // A transient may be shorter than what is between two states: the larger of both ends.
+    let pair = |pair: &[&Led]| (pair[1].t_s - pair[0].t_s).max(0.0) * of(pair[0]).max(of(pair[1]));
+    way.windows(2).map(pair).sum::<f64>() / span_s
 }
 
 /// V(0) of an agent, J; `None` where z(0) follows from what is heard.

@@ -86,7 +86,7 @@ fn standing(load: &StaticLoad) -> String {
 }
 
 fn power(bound: &PowerBound) -> String {
-    let PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, friction_w, sigma, mean_w } = *bound;
+    let PowerBound { agents, span_s, start_w, .. } = *bound;
     let who = if agents == 1 { "sᵀKs".to_owned() } else { format!("Σ sᵀKs of {agents} agents") };
     // Sampled, what the plant does between samples is taken along the references.
     let kind = if bound.is_expected() { "is expected to be at most" } else { "is at most" };
@@ -94,16 +94,17 @@ fn power(bound: &PowerBound) -> String {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
         _ => String::new(),
     };
-    let sampled = if sigma > 0.0 { format!(", with σ = {}", rounded(sigma)) } else { String::new() };
+    let sampled = if bound.sigma > 0.0 { format!(", with σ = {}", rounded(bound.sigma)) } else { String::new() };
     format!(
-        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{sampled}",
-        rounded_up(mean_w),
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{}{sampled}",
+        rounded_up(bound.mean_w),
         rounded_up(start_w),
-        part("pushes", push_w),
-        part("measurement errors", noise_w),
-        part("steps of the torque", steps_w),
-        part("torques that are held and velocities that lag while they move", held_w),
-        part("dry friction", friction_w),
+        part("pushes", bound.push_w),
+        part("measurement errors", bound.noise_w),
+        part("steps of the torque", bound.steps_w),
+        part("torques that are held and velocities that lag while they move", bound.held_w),
+        part("what s gains from sample to sample", bound.between_w),
+        part("dry friction", bound.friction_w),
     )
 }
 
@@ -139,7 +140,7 @@ fn agreement(bound: &AgreementBound) -> String {
 }
 
 /// The bounds on s put through the gains.
-fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
+fn axes(AgreementBound { axes, expected, sampled, .. }: &AgreementBound) -> String {
     let Some([least, most]) = axes else {
         return "how large s is cannot be told before the run; ".into();
     };
@@ -163,7 +164,8 @@ fn axes(AgreementBound { axes, expected, .. }: &AgreementBound) -> String {
     } else {
         format!("{}, {}", one(least), one(most))
     };
-    format!("beside what s = 0 leaves there {kind}{both}; ")
+    let beside = if *sampled { "references that are sampled leave with s = 0" } else { "s = 0 leaves" };
+    format!("beside what {beside} there {kind}{both}; ")
 }
 
 /// Of how many agents one is the worst.
@@ -195,16 +197,22 @@ fn whole(found: &WholeLoop) -> String {
         None => "sample faster, filter less, or let the roots be slower",
     };
     let meaning = match (found.lasting_per_s(), found.start_per_s(), found.amplified()) {
-        _ if let Some((agent, t_s)) = &found.lost => {
-            format!(
-                "by itself {} has run away after {} s, which it would not in continuous time; sample faster",
-                agent.name,
-                rounded(*t_s)
-            )
-        }
+        _ if let Some(t_s) = found.trial.lost_s => format!(
+            "in a trial the agents have run away by {} s, which they do not where samples are fast; sample faster, or adapt more slowly",
+            rounded(t_s)
+        ),
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
         }
+        (Some(rate), _, _) if found.is_contradicted(rate) => format!(
+            "a mode grows at {}/s in some of these states, though a trial to the end of the run does not run away; {advice}",
+            rounded(rate)
+        ),
+        (Some(rate), _, _) if found.answer() == PracticalAnswer::NotShown && found.amplified().is_none() => format!(
+            "if the largest weights stayed for ever a mode would grow at {}/s, and the network changes; sample faster, filter less, or \
+             let roots and weights be smaller",
+            rounded(rate)
+        ),
         (_, _, Some(part)) => format!(
             "what is heard is passed on up to {} times as large, so that in some network with such weights a mode may grow: sample \
              faster, filter less, or let roots and weights be smaller",

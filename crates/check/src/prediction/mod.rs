@@ -37,3 +37,4 @@ pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, settled};
 pub use torque::PeakTorque;
 pub use unfinished::Unfinished;
+pub(crate) use unfinished::trial;

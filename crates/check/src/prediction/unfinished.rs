@@ -75,6 +75,12 @@ pub(super) fn simulated(
     Ok((outcome, reached_s))
 }
 
+/// A run of a setup as it is, as far as it may go; `None` where it has no meaning, or takes more than so much work.
+pub(crate) fn trial(setup: &Setup, mut work: f64) -> Option<Outcome> {
+    let (outcome, _) = simulated(setup, None, &mut work, &mut |_| ControlFlow::Continue(())).ok()?;
+    (!matches!(outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })).then_some(outcome)
+}
+
 /// A quarter of the rows that would fit into memory, where those that were asked for do not.
 fn fewer_rows(ideal: &Setup, least_s: f64) -> Setup {
     Setup { time: TimeSpan { record_every_s: 4.0 * least_s, ..ideal.time.clone() }, ..ideal.clone() }

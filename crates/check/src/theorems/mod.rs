@@ -5,7 +5,7 @@ mod declared;
 mod desired;
 mod following;
 mod own_targets;
-mod swarm;
+pub(crate) mod swarm;
 mod theorem_1;
 mod theorem_3;
 mod tried;

@@ -43,7 +43,7 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvid
 }
 
 /// What k λ must exceed; `None` where p² + β p + α has no real roots.
-fn least(alpha: f64, beta: f64) -> Option<f64> {
+pub(crate) fn least(alpha: f64, beta: f64) -> Option<f64> {
     let root = beta * beta - 4.0 * alpha;
     if root < -WIDER * beta * beta {
         return None;

@@ -305,6 +305,6 @@ fn regress_an_agent_that_runs_away_by_itself_is_not_left_out() {
         setup.sampled(hz)
     };
     let [fast, slow] = [at(20.0), at(0.3)].map(|setup| WholeLoop::of(&setup).expect("it has numbers at its start"));
-    assert_eq!((fast.lost.clone(), fast.answer()), (None, PracticalAnswer::Adequate), "{fast:?}");
-    assert!(slow.lost.is_some() && slow.answer() == PracticalAnswer::Inadequate, "{slow:?}");
+    assert_eq!((fast.trial.lost_s, fast.answer()), (None, PracticalAnswer::Adequate), "{fast:?}");
+    assert!(slow.trial.lost_s.is_some() && slow.answer() == PracticalAnswer::Inadequate, "{slow:?}");
 }

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use forwardstep::io::shown;
 
@@ -29,9 +29,29 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
         }
         // A terminal, a pipe, or nothing.
         Ok(_) => Ok(()),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(Plain::new(format!("cannot write `{}`: {error}", shown(path)))),
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            let partial = partial(path);
+            File::create(&partial).and_then(|_| fs::remove_file(&partial)).map_err(|error| refused(path, &error))
+        }
+        Err(error) => Err(refused(path, &error)),
     }
+}
+
+fn refused(path: &Path, error: &io::Error) -> Plain<String> {
+    let help = match error.kind() {
+        ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => {
+            Some("name a file in a folder that you may write to")
+        }
+        ErrorKind::StorageFull => Some("make room, or name a file on another disk"),
+        _ => None,
+    };
+    Plain::with_help(format!("cannot write `{}`: {error}", shown(path)), help)
+}
+
+/// Another name beside it, which no other program that runs now has.
+fn partial(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.{}.partial", std::process::id()))
 }
 
 /// Writes it, whole or not at all: what was there before stays where that fails.
@@ -43,13 +63,12 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), Plain<String>> {
         Ok(found) => fs::canonicalize(path).and_then(|path| put(&path, text, Some(found.permissions()))),
         Err(_) => put(path, text, None),
     };
-    written.map_err(|error| Plain::new(format!("cannot write `{}`: {error}", shown(path))))
+    written.map_err(|error| refused(path, &error))
 }
 
-/// Under another name first, which no other program that runs now has.
+/// Under another name first.
 fn put(path: &Path, text: &str, permissions: Option<fs::Permissions>) -> io::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = path.with_file_name(format!(".{name}.{}.partial", std::process::id()));
+    let partial = partial(path);
     let written = File::create(&partial).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         permissions.map_or(Ok(()), |permissions| file.set_permissions(permissions))?;

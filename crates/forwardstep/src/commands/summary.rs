@@ -41,8 +41,8 @@ pub(crate) fn summary(
         rows.push(("in words", sentence));
         rows.extend(advice.into_iter().map(|line| ("to change", line)));
     }
-    if let Some(goal) = &record.goal {
-        rows.push(("goal", format!("{}: {}", if goal.met { "met" } else { "missed" }, goal.goal.words())));
+    if let Some(goal) = record.goal {
+        rows.push(("goal", format!("{}: {}", record.goal_word(goal), goal.goal.words())));
     }
     rows.push((final_gap(setup), disagreement(setup, metrics)));
     if let Some(settled_s) = metrics.settled_s {

@@ -83,6 +83,29 @@ fn delays_that_swing_ever_wider_are_refuted() {
     }
 }
 
+/// What happens late, and is over soon after.
+#[test]
+fn a_leader_that_moves_at_another_time_than_the_first_is_certified() {
+    for when in ["20", "60", "200"] {
+        accepted(&led(&format!("formulas = [\"atan(t - {when})\"]"), "3"), "sign-gain", "holds");
+    }
+}
+
+/// α and β are products and sums that are rounded; a checker has the roots.
+#[test]
+fn swarms_are_certified_whatever_their_roots_are() {
+    let text = fs::read_to_string(super::file_of("swarm-tracking")).unwrap();
+    let with = |coefficients: &str| text.replace("roots_per_s = [1.0, 1.0]", coefficients);
+    for roots in ["[1.3, 0.7]", "[1.17, 0.36]", "[1.1, 1.1]", "[0.9, 1.1]"] {
+        accepted(&with(&format!("roots_per_s = {roots}")), "swarm-coupling", "holds");
+    }
+    // κ₀ is irrational, and the limit of two that are equal.
+    for coefficients in ["alpha = 1.3\nbeta = 2.4", "alpha = 1.21\nbeta = 2.2"] {
+        accepted(&with(coefficients), "swarm-coupling", "holds");
+    }
+    assert_ne!(judged(&with("alpha = 1.5\nbeta = 2.4"), "swarm-coupling").0, "holds");
+}
+
 /// A constant may be irrational: what runs is the double next to it.
 #[test]
 fn constants_that_are_not_rational_are_certified() {

@@ -146,7 +146,9 @@ impl Names<'_> {
                 let matrix = |Matrix { agent, gain, pivots }: &Matrix| json!({ "agent": self.of(*agent), "gain": gain, "pivots": numbers(pivots) });
                 json!({ "kind": "definite", "matrices": matrices.iter().map(matrix).collect::<Vec<_>>() })
             }
-            Proof::Laplacian(pivots) => json!({ "kind": "definite", "pivots": numbers(pivots) }),
+            Proof::Laplacian { least, pivots } => {
+                json!({ "kind": "definite", "least": decimal(least), "pivots": numbers(pivots) })
+            }
             Proof::Derivatives(order, range) => {
                 json!({ "kind": "derivatives", "order": order, "stretch": Value::Object(stretch(*range)) })
             }

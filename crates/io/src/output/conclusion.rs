@@ -192,11 +192,12 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
             advice.push(format!("run longer: at this rate `time.end_s = {end_s}` would be enough"));
         }
     }
-    advice.extend(takes_s.map(|takes_s| {
-        format!(
-            "the design is slow, whatever the robots do: it needs some {} s more; larger weights, more links or larger roots make it faster",
-            about(takes_s)
-        )
+    // A time has been advised, with room.
+    let needs = |takes_s: f64| {
+        if advice.is_empty() { format!(": it needs some {} s more", about(takes_s)) } else { String::new() }
+    };
+    advice.extend(takes_s.map(needs).map(|needs| {
+        format!("the design is slow, whatever the robots do{needs}; larger weights, more links or larger roots make it faster")
     }));
     advice.extend(hypotheses(record.verdicts));
     if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped

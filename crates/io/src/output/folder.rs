@@ -319,6 +319,7 @@ impl Staging<'_> {
         let is_old = |name: &str| !self.names.iter().any(|new| new == name);
         for name in FILES.into_iter().chain(earlier.iter().map(String::as_str)).filter(|name| is_old(name)) {
             remove(name)?;
+            let _ = folder.disk().remove_file(&folder.partial(name)); // of a writer that was killed
             folder.remove_empty_above(name);
         }
         self.names.sort_by_key(|name| *name == SEAL);

@@ -61,6 +61,20 @@ impl RunRecord<'_> {
     pub(crate) fn keeps_offsets(&self) -> bool {
         !self.setup.all_track() && self.setup.agents.iter().any(|agent| agent.target.is_some())
     }
+
+    /// Whether somebody ended the run before its horizon, so that nothing is known of what would have come.
+    pub fn is_undecided(&self) -> bool {
+        matches!(self.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })
+    }
+
+    /// What became of its goal: `met`, `missed` or `undecided`.
+    pub fn goal_word(&self, goal: GoalOutcome) -> &'static str {
+        match goal.met {
+            true => "met",
+            false if self.is_undecided() => "undecided",
+            false => "missed",
+        }
+    }
 }
 
 impl Goal {

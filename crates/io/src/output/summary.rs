@@ -133,6 +133,9 @@ pub struct GoalMet {
     pub expect_diverges: bool,
     /// Whether it was met.
     pub met: bool,
+    /// True when it was not, and the run ended before anybody could tell.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub undecided: bool,
 }
 
 /// Work of the integrator.
@@ -235,6 +238,7 @@ impl Summary {
                 },
                 expect_diverges: outcome.goal == Goal::ExpectDiverges,
                 met: outcome.met,
+                undecided: record.goal_word(outcome) == "undecided",
             }),
             verdicts: Verdicts::of(record.verdicts),
             practical: Some(PracticalVerdicts::of(setup)),

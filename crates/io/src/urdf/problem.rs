@@ -309,6 +309,12 @@ impl Problem for UrdfProblem {
     fn help(&self) -> Option<String> {
         let text = match self {
             UrdfProblem::Meant { meant, file } => meant.given_as_robot(&shown(file).to_string()),
+            UrdfProblem::Xml { error } => match &**error {
+                roxmltree::Error::UnknownNamespace(prefix, _) => format!(
+                    "nothing with this prefix is read: take it out, or declare it as in `<robot name=\"…\" xmlns:{prefix}=\"urn:{prefix}\">`"
+                ),
+                _ => return None,
+            },
             UrdfProblem::Doctype => "delete it; a robot needs no entities".to_owned(),
             UrdfProblem::TooLarge { size: Size::MovingJoints, .. } => {
                 "make those fixed that need not move: every one costs time at every step".to_owned()

@@ -239,6 +239,17 @@ impl Law for ChainLaw {
         self.estimate()?.bounds.clone()
     }
 
+    fn with_estimate(&self, theta: &[f64], _: &RobotSetup) -> Option<Arc<dyn Law>> {
+        let mut law = self.clone();
+        match &mut law.step {
+            ChainStep::Linearising { .. } => return None,
+            ChainStep::Adaptive { estimate, .. }
+            | ChainStep::Immersion { estimate, .. }
+            | ChainStep::Backstepping { estimate, .. } => estimate.start = theta.to_vec(),
+        }
+        Some(Arc::new(law))
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let own = assembly.agent();
         let model: &ChainModel = assembly.robot()?;

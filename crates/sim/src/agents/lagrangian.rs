@@ -300,6 +300,10 @@ impl Law for Adaptive {
         self.bounds.clone()
     }
 
+    fn with_estimate(&self, theta: &[f64], _: &RobotSetup) -> Option<Arc<dyn Law>> {
+        Some(Arc::new(Adaptive { estimate_start: theta.to_vec(), ..self.clone() }))
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         block(assembly)
     }

@@ -1,5 +1,7 @@
 //! A point mass whose velocity is not measured, by a model and a high gain: what Remark 7 compares (a8) with.
 
+use std::sync::Arc;
+
 use forwardstep_core::controller::ModelReference;
 use forwardstep_core::plant::Mechanical;
 use forwardstep_core::reference::polynomial;
@@ -41,6 +43,10 @@ impl Law for ModelReferenceLaw {
 
     fn known(&self) -> Known {
         Known::Checked
+    }
+
+    fn with_estimate(&self, theta: &[f64], _: &RobotSetup) -> Option<Arc<dyn Law>> {
+        Some(Arc::new(ModelReferenceLaw { estimate_start: *theta.first()?, ..*self }))
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

@@ -1,5 +1,7 @@
 //! A point mass whose velocity is not measured: (a7)–(a9) and Remark 7.
 
+use std::sync::Arc;
+
 use forwardstep_core::controller::{Guide, PositionOnly};
 use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::Mechanical;
@@ -51,6 +53,10 @@ impl Law for PositionOnlyLaw {
 
     fn kept_within(&self) -> Option<ParameterBounds> {
         self.bounds.map(|Range { lower, upper }| ParameterBounds::new(vec![lower], vec![upper], 1.0))
+    }
+
+    fn with_estimate(&self, theta: &[f64], _: &RobotSetup) -> Option<Arc<dyn Law>> {
+        Some(Arc::new(PositionOnlyLaw { estimate_start: *theta.first()?, ..*self }))
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

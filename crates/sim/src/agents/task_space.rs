@@ -140,6 +140,11 @@ impl Law for TaskSpaceLaw {
         self.estimate_bounds.clone()
     }
 
+    fn with_estimate(&self, theta: &[f64], robot: &RobotSetup) -> Option<Arc<dyn Law>> {
+        let lengths = self.tip.parameters(&*robot.kind)?;
+        Some(Arc::new(TaskSpaceLaw { estimate_start: theta.to_vec(), kinematic_start: lengths, ..self.clone() }))
+    }
+
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         match &self.tip {
             TipSetup::Planar(tip) => match assembly.agent().robot.kind.downcast::<Driven<PlanarArm>>() {

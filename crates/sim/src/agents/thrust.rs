@@ -1,5 +1,7 @@
 //! (45)–(58): the law of vehicles with one thrust, by angular velocities or, for rotorcraft, by torques.
 
+use std::sync::Arc;
+
 use forwardstep_core::controller::{Floor, RateLoop, Thrust, ThrustByAcceleration, ThrustCascade, ThrustDesign, Yaw};
 use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::{AcceleratedVehicle, Vehicle};
@@ -157,6 +159,17 @@ impl Law for ThrustLaw {
 
     fn kept_within(&self) -> Option<ParameterBounds> {
         self.design.bounds().map(|Range { lower, upper }| ParameterBounds::new(vec![lower], vec![upper], 1.0))
+    }
+
+    fn with_estimate(&self, theta: &[f64], _: &RobotSetup) -> Option<Arc<dyn Law>> {
+        let mut law = *self;
+        match &mut law.design {
+            ThrustKind::Continuous | ThrustKind::Differentiable { .. } => return None,
+            ThrustKind::Adaptive { estimate_start, .. } | ThrustKind::ByAcceleration { estimate_start, .. } => {
+                *estimate_start = *theta.first()?;
+            }
+        }
+        Some(Arc::new(law))
     }
 
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {

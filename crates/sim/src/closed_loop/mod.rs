@@ -59,6 +59,6 @@ pub use probe::probe_balance;
 pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;
-pub use sampled_map::{SampledLoop, sampled_loop};
+pub use sampled_map::{Periods, SampledLoop, sampled_loop};
 pub use valid::validate;
 pub use velocity_quantity::VelocityQuantity;

@@ -1,4 +1,4 @@
-//! One period of one agent under digital control, as a map, and its Jacobian by central differences.
+//! One period of one agent under digital control, or some after each other, as a map, and its Jacobian by central differences.
 //!
 //! The state of the map is that of the plant and of the controller at a sample, as the sampled controller carries it on, and the
 //! command before where commands come late. Everything else that a controller remembers of its last sample follows from these: built
@@ -41,13 +41,34 @@ pub struct SampledLoop {
     pub hears: [Vec<f64>; 2],
 }
 
-/// One period of agent `index` of `setup`, where it hears others with weights that sum to `degree` and that agree with it as it starts: at its
-/// start, or after so many periods by itself. Behind the state of plant and controller stand what a filter gives for the velocities, where
+/// Periods of an agent by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Periods {
+    /// When the first begins, s: targets are those of then.
+    pub begin_s: f64,
+    /// How many pass before it is looked at.
+    pub after: u32,
+    /// Over how many it is looked at: one at least.
+    pub over: u32,
+}
+
+impl Periods {
+    /// The first.
+    pub const FIRST: Periods = Periods { begin_s: 0.0, after: 0, over: 1 };
+}
+
+/// These periods of agent `index` of `setup`, where it hears others with weights that sum to `degree` and that agree with it as it starts: what is
+/// heard is that of the first of them. Behind the state of plant and controller stand what a filter gives for the velocities, where
 /// they are filtered, and the command before, where it comes late. `None` when control is continuous, and where something is not finite.
 ///
 /// # Errors
 /// [`SetupError`] when the law cannot build the agent.
-pub fn sampled_loop(setup: &Setup, index: usize, degree: f64, after: u32) -> Result<Option<SampledLoop>, SetupError> {
+pub fn sampled_loop(
+    setup: &Setup,
+    index: usize,
+    degree: f64,
+    periods: Periods,
+) -> Result<Option<SampledLoop>, SetupError> {
     let (Some(control), Some(own)) = (&setup.control, setup.agents.get(index)) else { return Ok(None) };
     let quick = match control.sensors.velocity {
         VelocitySensor::Measured => None,
@@ -86,10 +107,10 @@ pub fn sampled_loop(setup: &Setup, index: usize, degree: f64, after: u32) -> Res
         heard,
         quick,
         filtered,
-        begin_s: 0.0,
+        begin_s: periods.begin_s,
         steps: STEPS[0],
     }
-    .linearised(after)
+    .linearised(periods)
 }
 
 /// What makes a period pass.
@@ -120,7 +141,7 @@ struct Passed {
 }
 
 impl Period<'_> {
-    fn linearised(mut self, after: u32) -> Result<Option<SampledLoop>, SetupError> {
+    fn linearised(mut self, Periods { after, over, .. }: Periods) -> Result<Option<SampledLoop>, SetupError> {
         let mut x = Vec::new();
         self.columns.append_start(&self.setup.agents, &mut x);
         let agent = &self.setup.agents[0].name;
@@ -138,12 +159,9 @@ impl Period<'_> {
             x.extend(state.get(x.len()..).unwrap_or_default().to_vec());
         }
         self.choose_steps(&x, is_late)?;
-        for _ in 0..after {
-            x = self.pass(&x, is_late)?.state;
-            if x.iter().any(|x| !x.is_finite()) {
-                return Ok(None);
-            }
-            self.begin_s += 1.0 / self.control.sample_hz;
+        if after > 0 {
+            x = self.passes(&x, is_late, after)?.state;
+            self.begin_s += f64::from(after) / self.control.sample_hz;
         }
         let (n, m) = (x.len(), told.len());
         let [mut own, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];
@@ -153,7 +171,7 @@ impl Period<'_> {
             let mut moved = |by: f64| {
                 let mut x = x.clone();
                 x[column] += by;
-                self.pass(&x, is_late)
+                self.passes(&x, is_late, over)
             };
             let (above, below) = (moved(apart)?, moved(-apart)?);
             let slope = |(above, below): (&f64, &f64)| (above - below) / (2.0 * apart);
@@ -170,7 +188,7 @@ impl Period<'_> {
                 let apart = APART * (1.0 + self.heard[when][column].abs());
                 let mut moved = |by: f64| {
                     self.heard[when][column] += by;
-                    let passed = self.pass(&x, is_late);
+                    let passed = self.passes(&x, is_late, over);
                     self.heard[when][column] -= by;
                     passed
                 };
@@ -204,6 +222,22 @@ impl Period<'_> {
             passed = finer;
         }
         Ok(())
+    }
+
+    /// The state so many periods after `x`, one at least, and what is told at the beginning of the first.
+    fn passes(&mut self, x: &[f64], is_late: bool, periods: u32) -> Result<Passed, SetupError> {
+        let begin_s = self.begin_s;
+        let mut passed = self.pass(x, is_late)?;
+        for _ in 1..periods {
+            // What has run away stays away.
+            if passed.state.iter().any(|x| !x.is_finite()) {
+                break;
+            }
+            self.begin_s += 1.0 / self.control.sample_hz;
+            passed.state = self.pass(&passed.state, is_late)?.state;
+        }
+        self.begin_s = begin_s;
+        Ok(passed)
     }
 
     /// The state a period after `x`, and what is told at its beginning. Where commands are late, `x` ends with what the actuators held

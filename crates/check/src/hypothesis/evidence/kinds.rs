@@ -229,6 +229,8 @@ pub enum KindEvidence {
         name: Option<String>,
         /// Its value, in its unit.
         value: f64,
+        /// What its estimate is kept within.
+        bounds: [f64; 2],
     },
     /// h_I by the start, N m s.
     Momentum([f64; 3]),

@@ -65,7 +65,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
         KindEvidence::FactorFloor { agent, floor, everywhere, matrix } => {
             let known = match everywhere {
                 FactorEverywhere::Fades => {
-                    "; it has one sign in every state, but may come close to zero far away".into()
+                    "; it has one sign in every state, but that it keeps away from zero far away was not shown".into()
                 }
                 FactorEverywhere::Away { least } => {
                     format!("; in every state it is {} at least, which is less", rounded_down(*least))
@@ -151,8 +151,9 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("{} does not adapt its lengths, which are not the true ones", agent.name)
         }
         KindEvidence::ParametersInside => "they do, so projection only speeds the proof up".into(),
-        KindEvidence::ParameterOutside { agent, name, value } => {
-            format!("{} of {} is {value}, which is outside", name.as_deref().unwrap_or("one"), agent.name)
+        KindEvidence::ParameterOutside { agent, name, value, bounds: [low, high] } => {
+            let name = name.as_deref().unwrap_or("one");
+            format!("{name} of {} is {value}, which is outside {low} to {high}", agent.name)
         }
         KindEvidence::Momentum([x, y, z]) => {
             format!("h_I = [{x:.4}, {y:.4}, {z:.4}] N m s by the start, and nothing acts from outside")

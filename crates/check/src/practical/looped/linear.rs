@@ -1,6 +1,6 @@
 //! The matrices of one period of an agent, and what its multipliers say.
 
-use forwardstep_sim::{Setup, sampled_loop};
+use forwardstep_sim::{Periods, Setup, sampled_loop};
 use nalgebra::{Complex, DMatrix};
 
 use crate::prediction::roots::eigenvalues::eigenvalues;
@@ -23,13 +23,13 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Of an agent `after` so many periods by itself, where it hears others with weights that sum to `degree`; `None` where nothing
-    /// finite is found.
-    pub(super) fn of(setup: &Setup, agent: usize, degree: f64, after: u32) -> Option<Linear> {
-        let found = sampled_loop(setup, agent, degree, after).ok()??;
+    /// Of these periods of an agent by itself, where it hears others with weights that sum to `degree`; `None` where nothing finite is
+    /// found.
+    pub(super) fn of(setup: &Setup, agent: usize, degree: f64, periods: Periods) -> Option<Linear> {
+        let found = sampled_loop(setup, agent, degree, periods).ok()??;
         let (n, m) = (found.size, found.message);
         let hears = found.hears.map(|entries| DMatrix::from_row_slice(n, m, &entries));
-        let period_s = 1.0 / setup.control.as_ref()?.sample_hz;
+        let period_s = f64::from(periods.over) / setup.control.as_ref()?.sample_hz;
         let own = DMatrix::from_row_slice(n, n, &found.own);
         Some(Linear { period_s, own, tells: DMatrix::from_row_slice(m, n, &found.tells), hears })
     }

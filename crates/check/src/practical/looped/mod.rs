@@ -18,33 +18,35 @@
 //!   |μ| = 1, and J decays, every mode that passes on means of what is heard decays or stays, since a late link multiplies by
 //!   μ^(−k), which is smaller still outside the circle. G(1) = 1: agreement.
 //!
-//! Sampled sixteen times as fast, with measured velocities and commands that act at once, the same agent has a rate and a radius of
-//! its own: what is no worse than that is no matter of sampling. A mode that overshoots from sample to sample, Re μ < 0, as 1 − h λ does for h λ > 1, or
+//! Sampled sixteen times as fast, or as much faster as it takes until a rate changes no more, with measured velocities and commands that act at
+//! once, the same agent has a rate and a radius of its own: what is no worse than that is no matter of sampling. A mode that overshoots from sample to sample, Re μ < 0, as 1 − h λ does for h λ > 1, or
 //! that decays half as fast as it would, is near to one that grows.
 //!
 //! All of it is local. It is looked at where a run starts, and where its references lead, with s ≡ 0: what lasts is there. Consensus
 //! comes to rest, and its last state counts; along the motion of a target it is the mean of r, an estimate as for any loop that changes
-//! with time. Agents under other laws are looked at again after some periods by themselves. A loop that is bad at the start alone is left
-//! before it has grown. Estimates are right, and where they move, the last state is looked at again with those that may be reached: at
-//! their upper bounds, or without bounds as they start. A loop that grows there may do so after it has drifted. Agents with friction are
-//! left out, since its slope at rest is that of no motion.
+//! with time. Agents under other laws are looked at again after some periods by themselves, over all of them where they follow a target, and
+//! a trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its
+//! largest weights; what grows then is not shown to, nor is what would have been seen in a trial that lasts to the end of the run. A loop that is bad at the start alone is left
+//! before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last state is looked at again with
+//! those that may be reached: at their upper bounds, or without bounds as they start. A loop that grows there may do so after it has
+//! drifted, unless the ideal one does too, which adaptation keeps from it. All of it but the trial is without friction.
 
 mod linear;
 mod network;
 mod place;
+mod trial;
 
-use forwardstep_sim::{Adaptive, AgentSetup, Setup};
+use forwardstep_sim::{Periods, Setup};
 
 use self::linear::Linear;
 use self::network::degree;
 use self::place::{NOISE, Place};
 use super::PracticalAnswer;
 use super::led::{Led, way};
-use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
-use crate::surroundings::smoothed_friction;
 
 pub use self::place::{LoopAt, LoopRate};
+pub use self::trial::Trial;
 
 /// How much larger G may be than that of the ideal loop.
 const PART: f64 = 0.02;
@@ -62,6 +64,10 @@ struct Later {
     /// Those under other laws after so many periods.
     periods: u32,
 }
+/// The logarithm by which rounding grows beyond everything.
+const SEEN: f64 = 60.0;
+/// A friction that is none, in N m or N: it has to be positive.
+const NO_FRICTION: f64 = 1e-12;
 const LATER: [Later; 4] = [
     Later { part: 0.25, periods: 64 },
     Later { part: 0.5, periods: 128 },
@@ -80,36 +86,43 @@ pub struct WholeLoop {
     pub led: Vec<LoopAt>,
     /// At the last of these states, with estimates that are wrong; nothing where none move.
     pub astray: Option<LoopAt>,
-    /// Who has run away by itself until one of these states, and when that is, s.
-    pub lost: Option<(Named, f64)>,
+    /// What a trial of all agents tells.
+    pub trial: Trial,
+    /// Whether what is heard by those that were looked at is not always weighed as much, as it is taken where no network is.
+    pub changes: bool,
     /// Agents that were looked at.
     pub agents: usize,
-    /// Agents without friction.
+    /// All there are.
     pub of: usize,
     /// The end of the run, s.
     end_s: f64,
 }
 
 impl WholeLoop {
-    /// Of the agents of a setup; `None` when control is continuous, or nothing finite is found.
+    /// Of the agents of a setup; `None` when control is continuous, or nothing finite is found. Without the trial but where
+    /// some adapt under other laws than (6)–(7).
     pub fn of(setup: &Setup) -> Option<WholeLoop> {
         setup.control.as_ref()?;
-        WholeLoop::on(setup, &way(setup))
+        let adapts = setup.agents.iter().any(|agent| !is_lagrangian(agent) && agent.estimates());
+        WholeLoop::found(setup, &way(setup), adapts)
     }
 
     /// The same with states on the way of agents under (6)–(7).
     pub(super) fn on(setup: &Setup, way: &[Led]) -> Option<WholeLoop> {
+        WholeLoop::found(setup, way, true)
+    }
+
+    fn found(setup: &Setup, way: &[Led], is_tried: bool) -> Option<WholeLoop> {
         let (period_s, end_s) = (1.0 / setup.control.as_ref()?.sample_hz, setup.time.end_s);
-        let known = known(setup);
-        let all: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_smooth(&setup.agents[*agent])).collect();
-        let of = all.len();
-        let first = *all.first()?;
-        let states = Linear::of(&known, first, degree(&known, first), 0).map_or(MOST_STATES, |linear| linear.size());
+        let smooth = rubbed_by_nothing(setup);
+        let (known, of) = (known(&smooth), setup.agents.len());
+        let states = Linear::of(&known, 0, degree(&known, 0), Periods::FIRST);
+        let states = states.map_or(MOST_STATES, |linear| linear.size());
         let [least, most] = AGENTS;
         let count = (MOST_STATES / states.max(1)).clamp(least, most);
-        let others = all.iter().any(|agent| !is_lagrangian(&setup.agents[*agent]));
-        let looked: Vec<usize> = all.into_iter().step_by(of.div_ceil(count).max(1)).collect();
-        let (start, _) = Place::new(known.clone(), 0.0, 0)?.look(&looked);
+        let others = setup.agents.iter().any(|agent| !is_lagrangian(agent));
+        let looked: Vec<usize> = (0..of).step_by(of.div_ceil(count).max(1)).collect();
+        let start = Place::new(known.clone(), 0.0, 0)?.look(&looked);
         let at = |setup: &Setup, Later { part, periods }: &Later| match on_the_way(setup, way, *part) {
             Some((t_s, there)) => Place::new(there, t_s, *periods),
             None if others => Place::new(setup.clone(), f64::from(*periods) * period_s, *periods),
@@ -118,16 +131,13 @@ impl WholeLoop {
         // Consensus comes to rest.
         let is_led = setup.following().is_some() || looked.iter().any(|agent| setup.tracks(*agent));
         let [.., last] = &LATER;
-        let places = if is_led || way.is_empty() { &LATER[..] } else { core::slice::from_ref(last) };
-        let (mut led, mut lost) = (Vec::new(), None);
-        for place in places.iter().filter_map(|later| at(&known, later)) {
-            let (found, gone) = place.look(&looked);
-            led.extend(found);
-            lost = lost.or(gone.map(|agent| (Named::of(setup, agent), place.t_s)));
-        }
-        let astray = astray(setup).and_then(|wrong| at(&wrong, last).or_else(|| Place::new(wrong, 0.0, 0)));
-        let astray = astray.and_then(|place| place.look(&looked).0);
-        Some(WholeLoop { period_s, start: start?, led, astray, lost, agents: looked.len(), of, end_s })
+        let places = if is_led { &LATER[..] } else { core::slice::from_ref(last) };
+        let led: Vec<LoopAt> = places.iter().filter_map(|later| at(&known, later)?.look(&looked)).collect();
+        let astray = astray(&smooth).and_then(|wrong| at(&wrong, last).or_else(|| Place::new(wrong, 0.0, 0)));
+        let astray = astray.and_then(|place| place.look(&looked));
+        let trial = if is_tried { Trial::of(setup) } else { None }.unwrap_or_default();
+        let changes = looked.iter().any(|agent| network::changes(setup, *agent));
+        Some(WholeLoop { period_s, start: start?, led, astray, trial, changes, agents: looked.len(), of, end_s })
     }
 
     /// The period near `near_s` from which on a mode of `setup` grows in the long run, s, where `sampled` samples it with a period: the end of the
@@ -136,7 +146,8 @@ impl WholeLoop {
     pub fn longest_period_s(near_s: f64, sampled: impl Fn(f64) -> Setup) -> Option<f64> {
         // Where nothing finite is found no mode decays.
         let decays = |period_s: f64| {
-            WholeLoop::of(&sampled(period_s)).is_some_and(|it| it.lost.is_none() && it.lasting_per_s().is_none())
+            WholeLoop::of(&sampled(period_s))
+                .is_some_and(|it| it.trial.lost_s.is_none() && it.lasting_per_s().is_none())
         };
         let (step, most) = SCAN;
         let (mut low, mut high, mut left) = (near_s, near_s, most);
@@ -159,20 +170,28 @@ impl WholeLoop {
         Some(low)
     }
 
-    /// Inadequate where a mode grows in the long run or an agent runs away by itself, marginal where it does so at the start, with wrong estimates, or too slowly to be
-    /// seen, or where one overshoots or is slowed; not shown where one may grow in some network.
+    /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong estimates, or
+    /// too slowly to be seen, or where one overshoots or is slowed; not shown where one may grow in some network, would if the largest weights stayed, or would have been seen to in the trial.
     pub fn answer(&self) -> PracticalAnswer {
-        if self.lost.is_some() {
+        if self.trial.lost_s.is_some() {
             return PracticalAnswer::Inadequate;
         }
         let lasting = self.lasting_per_s();
         let is_slower = || self.start.overshoot().is_some() || self.start.slowed_per_s().is_some();
         match lasting {
-            Some(rate) if rate * self.end_s > 1.0 => PracticalAnswer::Inadequate,
+            Some(rate) if rate * self.end_s > 1.0 => match self.changes || self.is_contradicted(rate) {
+                true => PracticalAnswer::NotShown,
+                false => PracticalAnswer::Inadequate,
+            },
             _ if self.amplified().is_some() => PracticalAnswer::NotShown,
             None if self.start_per_s().or(self.astray_per_s()).is_none() && !is_slower() => PracticalAnswer::Adequate,
             _ => PracticalAnswer::Marginal,
         }
+    }
+
+    /// Whether what grows so fast would have been seen in the trial, from whatever it begins with.
+    pub(super) fn is_contradicted(&self, rate_per_s: f64) -> bool {
+        self.trial.lasted && rate_per_s * self.end_s > SEEN
     }
 
     /// How fast the worst mode grows by sampling in the long run, 1/s, if it does.
@@ -188,9 +207,11 @@ impl WholeLoop {
         self.growth(core::slice::from_ref(&self.start))
     }
 
-    /// The same with estimates that are wrong.
+    /// The same with estimates that are wrong, unless a mode grows with them in the ideal loop, where adaptation moves them before it has.
     pub fn astray_per_s(&self) -> Option<f64> {
-        self.growth(self.astray.as_slice())
+        let astray =
+            self.astray.as_ref().filter(|at| at.rate().ideal_per_s.is_none_or(|ideal| ideal * self.period_s <= NOISE));
+        self.growth(astray.map_or(&[], core::slice::from_ref))
     }
 
     /// The mean, where it is more than rounding.
@@ -211,17 +232,24 @@ impl WholeLoop {
     }
 }
 
-/// Without friction, whose slope at rest says nothing of a motion.
-fn is_smooth(agent: &AgentSetup) -> bool {
-    smoothed_friction(agent, &agent.start.dq).is_none()
+/// The same without friction, whose slope at rest is that of no motion, and which holds back what grows only while it is small.
+fn rubbed_by_nothing(setup: &Setup) -> Setup {
+    let mut setup = setup.clone();
+    for agent in &mut setup.agents {
+        let drives = agent.robot.interface().drives;
+        let those = drives.ranges_in(agent.robot.theta.len()).map(|[.., frictions]| frictions);
+        let forces = those.filter(|_| !drives.friction.is_empty()).and_then(|those| agent.robot.theta.get_mut(those));
+        forces.into_iter().flatten().for_each(|force| *force = NO_FRICTION);
+    }
+    setup
 }
 
 /// The same with estimates that are right.
 fn known(setup: &Setup) -> Setup {
     let mut known = setup.clone();
     for agent in &mut known.agents {
-        let theta = agent.robot.theta.clone();
-        agent.change_law(|law: &mut Adaptive| law.estimate_start = theta);
+        let law = agent.law.with_estimate(&agent.robot.theta, &agent.robot);
+        agent.law = law.unwrap_or_else(|| agent.law.clone());
     }
     known
 }
@@ -230,11 +258,9 @@ fn known(setup: &Setup) -> Setup {
 fn astray(setup: &Setup) -> Option<Setup> {
     let (mut setup, mut moves) = (setup.clone(), false);
     for agent in &mut setup.agents {
-        moves |= agent.change_law(|law: &mut Adaptive| {
-            if let Some(bounds) = &law.bounds {
-                law.estimate_start.clone_from(&bounds.upper);
-            }
-        });
+        moves |= agent.estimates();
+        let law = agent.law.kept_within().and_then(|bounds| agent.law.with_estimate(&bounds.upper, &agent.robot));
+        agent.law = law.unwrap_or_else(|| agent.law.clone());
     }
     moves.then_some(setup)
 }
@@ -246,9 +272,9 @@ fn on_the_way(setup: &Setup, way: &[Led], part: f64) -> Option<(f64, Setup)> {
         let led = &own[(part * (own.len() - 1) as f64) as usize];
         let agent = &mut there.agents[led.agent];
         (agent.start.q, agent.start.dq) = (led.q.clone(), led.dq.clone());
-        // Left out, z is q̇ and what follows is zero, as at rest.
-        let moves = setup.tracks(led.agent) && agent.roots_per_s.len() > 1;
-        agent.start.reference = if moves { vec![led.dq.clone(), led.dz.clone()] } else { Vec::new() };
+        // Left out, z is q̇ and what follows is zero, as at rest. A target of as many roots leads to one derivative less.
+        let states = if setup.tracks(led.agent) { agent.roots_per_s.len().saturating_sub(1) } else { 0 };
+        agent.start.reference = [&led.dq, &led.dz].into_iter().take(states).cloned().collect();
         when = Some(led.t_s);
     }
     Some((when?, there))

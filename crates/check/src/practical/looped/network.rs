@@ -5,7 +5,6 @@ use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, Weight};
 use nalgebra::DMatrix;
 
-use super::is_smooth;
 use super::linear::{self, Linear};
 use crate::prediction::roots::eigenvalues::eigenvalues;
 
@@ -33,10 +32,17 @@ pub(super) fn degree(setup: &Setup, agent: usize) -> f64 {
     network.schedule.graphs.iter().map(of).fold(0.0, f64::max)
 }
 
+/// Whether the weights of what an agent hears sum to something else at other times.
+pub(super) fn changes(setup: &Setup, agent: usize) -> bool {
+    let is_constant = |edges: &[Edge]| {
+        edges.iter().filter(|edge| edge.to == agent).all(|edge| matches!(edge.weight, Weight::Constant(_)))
+    };
+    degree(setup, agent) > 0.0 && !setup.network.schedule.constant_graph().is_some_and(is_constant)
+}
+
 /// The largest ln|μ|/h of all modes of a network of agents that hear others or none; `None` where it changes or is too large.
 pub(super) fn rate(setup: &Setup, linear: impl Fn(usize) -> Option<Linear>) -> Option<f64> {
-    let is_apart = |agent: usize| !is_smooth(&setup.agents[agent]) || setup.tracks(agent);
-    if setup.following().is_some() || (0..setup.agents.len()).any(is_apart) {
+    if setup.following().is_some() || (0..setup.agents.len()).any(|agent| setup.tracks(agent)) {
         return None;
     }
     Fixed::of(setup)?.rate(linear)

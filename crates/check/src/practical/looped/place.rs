@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use forwardstep_sim::{Control, Setup, VelocitySensor};
+use forwardstep_sim::{Control, Periods, Setup, VelocitySensor};
 use nalgebra::Complex;
 
 use super::linear::{Linear, fastest};
@@ -11,13 +11,21 @@ use crate::hypothesis::Named;
 use crate::kinds::is_lagrangian;
 
 /// How much faster what is compared with is sampled.
-const FASTER: u32 = 16;
+pub(super) const FASTER: u32 = 16;
+/// How much faster yet, while a mode grows in it too: it is no ideal loop until that changes no more, by this part.
+const STILL_FASTER: [u32; 4] = [64, 256, 1024, 4096];
+const SETTLED: f64 = 0.1;
+/// How many periods pass for that at most, times numbers of state: what takes more is taken as it is.
+const MOST_WORK: f64 = 6e5;
 /// By how much differences miss a multiplier of one.
 pub(super) const NOISE: f64 = 3e-5;
 /// Smaller multipliers are zero: what is brought back to a manifold, and commands that are remembered.
 const FORGOTTEN: f64 = 1e-6;
 /// A mode that decays at less than this part of the rate that it has in the ideal loop is slowed.
 const SLOWED: f64 = 0.5;
+
+/// What the modes of a map say, or the map itself.
+type Told<'a> = dyn Fn(&[Complex<f64>], &Linear) -> Option<f64> + 'a;
 
 /// The loops at one state.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,6 +62,11 @@ impl LoopRate {
     }
 }
 
+/// Periods until those are looked at together that an agent follows a target in, under another law than (6)–(7) and with few numbers of
+/// state: its motion comes back, and what grows in a part of it may decay in another.
+const SETTLING: u32 = 64;
+const FEW_STATES: usize = 8;
+
 /// A setup whose agents are looked at: at its start, or those under other laws than (6)–(7) so many periods `later`.
 pub(super) struct Place {
     known: Setup,
@@ -65,7 +78,7 @@ pub(super) struct Place {
 impl Place {
     /// Of a setup that samples.
     pub(super) fn new(known: Setup, t_s: f64, later: u32) -> Option<Place> {
-        Some(Place { ideal: ideal(&known)?, known, t_s, later })
+        Some(Place { ideal: ideal(&known, FASTER)?, known, t_s, later })
     }
 
     fn sample_hz(&self) -> f64 {
@@ -82,22 +95,59 @@ impl Place {
         self.linear(&self.ideal, agent, FASTER)
     }
 
-    fn linear(&self, setup: &Setup, agent: usize, faster: u32) -> Option<Linear> {
-        let later = if is_lagrangian(&setup.agents[agent]) { 0 } else { self.later * faster };
-        Linear::of(setup, agent, degree(setup, agent), later)
+    /// A rate of the ideal loop, by that of a setup which samples so much faster, where one period as often as the deployed one takes this `work`;
+    /// `None` where it changes for as long as that is looked at.
+    fn settled(&self, work: f64, rate: impl Fn(&Setup, u32) -> Option<f64>) -> Option<f64> {
+        let mut found = rate(&self.ideal, FASTER)?;
+        let noise_per_s = f64::from(FASTER) * NOISE * self.sample_hz();
+        for faster in STILL_FASTER {
+            if found <= noise_per_s || work * f64::from(faster) > MOST_WORK {
+                return Some(found);
+            }
+            let finer = rate(&ideal(&self.known, faster)?, faster)?;
+            if (finer - found).abs() <= SETTLED * found {
+                return Some(finer);
+            }
+            found = finer;
+        }
+        (found <= noise_per_s).then_some(found)
     }
 
-    /// What is found at it of `agents`, and who of them has no numbers there though it has some in the ideal loop: by itself it has run
-    /// away.
-    pub(super) fn look(&self, agents: &[usize]) -> (Option<LoopAt>, Option<usize>) {
+    /// The periods of an agent that are looked at.
+    fn periods(&self, agent: usize) -> Periods {
+        if is_lagrangian(&self.known.agents[agent]) {
+            return Periods { begin_s: self.t_s, ..Periods::FIRST };
+        }
+        let is_small = || Linear::of(&self.known, agent, 0.0, Periods::FIRST).is_some_and(|it| it.size() <= FEW_STATES);
+        if self.later > 0 && self.known.tracks(agent) && is_small() {
+            let after = SETTLING.min(self.later / 2);
+            return Periods { after, over: self.later - after, ..Periods::FIRST };
+        }
+        Periods { after: self.later, ..Periods::FIRST }
+    }
+
+    fn linear(&self, setup: &Setup, agent: usize, faster: u32) -> Option<Linear> {
+        let periods = self.periods(agent);
+        let (after, over) = (periods.after * faster, if periods.over > 1 { periods.over * faster } else { 1 });
+        Linear::of(setup, agent, degree(setup, agent), Periods { after, over, ..periods })
+    }
+
+    /// How many periods pass to find what an agent of so many numbers of state does, times these.
+    fn work(&self, agent: usize, size: usize) -> f64 {
+        let Periods { after, over, .. } = self.periods(agent);
+        (f64::from(after) + 2.0 * size as f64 * f64::from(over)) * size as f64
+    }
+
+    /// What is found at it of `agents`.
+    pub(super) fn look(&self, agents: &[usize]) -> Option<LoopAt> {
         let own: BTreeMap<usize, Linear> =
             agents.iter().filter_map(|agent| Some((*agent, self.deployed(*agent)?))).collect();
-        let lost = agents.iter().find(|agent| !own.contains_key(agent) && self.ideal(**agent).is_some());
         let noise_per_s = NOISE * self.sample_hz();
         let deployed = |agent: usize| own.get(&agent).cloned().or_else(|| self.deployed(agent));
+        let all = own.iter().map(|(agent, own)| self.work(*agent, own.size())).sum();
         let network = network::rate(&self.known, deployed).map(|per_s| {
-            let ideal = || network::rate(&self.ideal, |agent| self.ideal(agent));
-            LoopRate { per_s, ideal_per_s: if per_s > noise_per_s { ideal() } else { None } }
+            let ideal = |setup: &Setup, faster: u32| network::rate(setup, |agent| self.linear(setup, agent, faster));
+            LoopRate { per_s, ideal_per_s: if per_s > noise_per_s { self.settled(all, ideal) } else { None } }
         });
         let mut found: Option<LoopAt> = None;
         for (&agent, own) in &own {
@@ -110,13 +160,17 @@ impl Place {
             let ideal = if is_needed { self.ideal(agent) } else { None };
             let ideal = ideal.and_then(|linear| Some((linear.multipliers()?, linear)));
             // What the deployed loop and the ideal one have in common to compare.
-            let pair = |of: &dyn Fn(&[Complex<f64>], &Linear) -> Option<f64>| {
+            let pair = |of: &Told<'_>| {
                 let (ideal_modes, ideal) = ideal.as_ref()?;
                 Some([of(&modes, own)?, of(ideal_modes, ideal)?])
             };
             let least_per_s = 1.0 / self.known.time.end_s;
-            let grows = |modes: &[Complex<f64>], linear: &Linear| Some(fastest(modes, linear.period_s));
-            let ideal_per_s = pair(&grows).map(|[_, ideal]| ideal).filter(|_| per_s > noise_per_s);
+            let grows = |setup: &Setup, faster: u32| {
+                let linear = self.linear(setup, agent, faster)?;
+                Some(fastest(&linear.multipliers()?, linear.period_s))
+            };
+            let work = self.work(agent, own.size());
+            let ideal_per_s = if per_s > noise_per_s { self.settled(work, grows) } else { None };
             let alone = LoopRate { per_s, ideal_per_s };
             let passed_on = if is_asked { pair(&|_, linear| Some(linear.passed_on())) } else { None };
             let leftmost = if is_other { pair(&|modes, _| Some(leftmost(modes))) } else { None };
@@ -135,7 +189,7 @@ impl Place {
                 Some(worst) => worst.and(one),
             });
         }
-        (found, lost.copied())
+        found
     }
 }
 
@@ -187,11 +241,11 @@ impl LoopAt {
 }
 
 /// The same with measured velocities, commands that act at once, and samples that are fast.
-fn ideal(setup: &Setup) -> Option<Setup> {
+pub(super) fn ideal(setup: &Setup, faster: u32) -> Option<Setup> {
     let control = setup.control.as_ref()?;
     let mut sensors = control.sensors;
     sensors.velocity = VelocitySensor::Measured;
-    let sample_hz = f64::from(FASTER) * control.sample_hz;
+    let sample_hz = f64::from(faster) * control.sample_hz;
     let control = Control { sample_hz, computation_delay_s: 0.0, sensors, ..control.clone() };
     Some(Setup { control: Some(control), ..setup.clone() })
 }

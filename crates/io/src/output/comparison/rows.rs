@@ -126,7 +126,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
         }),
         row(Observed, "ended", "ended", ended),
         row(Observed, "goal", "goal", |s| match s.run.record.goal {
-            Some(goal) => Ok(Cell::words(if goal.met { "met" } else { "missed" }).and(&goal.goal.words())),
+            Some(goal) => Ok(Cell::words(s.run.record.goal_word(goal)).and(&goal.goal.words())),
             None => Err(Cell::none("the scenario states none")),
         }),
         row(Observed, "final_gap", "gap at the end", final_gap),

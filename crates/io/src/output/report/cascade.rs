@@ -21,6 +21,11 @@ pub(super) struct CascadeIndex {
 }
 
 impl CascadeIndex {
+    /// Whether it has a curve of what there is at most.
+    pub(super) fn is_guaranteed(&self) -> bool {
+        self.guaranteed.is_some()
+    }
+
     /// Of a run; nothing where these variables are not defined or were not recorded.
     pub(super) fn of(record: &RunRecord<'_>, spread: &CascadeSpread, add: &mut impl FnMut(&[f64]) -> usize) -> Self {
         let t_s = &record.outcome.recording.t_s;

@@ -39,8 +39,8 @@ pub(crate) struct Payload {
     pub(crate) block: String,
     /// Whether bodies are drawn, and not points alone.
     pub(crate) solid: bool,
-    /// Whether there are cascaded variables.
-    pub(crate) cascade: bool,
+    /// Whether something is guaranteed of cascaded variables, where there are any.
+    pub(crate) cascade: Option<bool>,
     /// What was left out, for the reader.
     pub(crate) notes: Vec<String>,
 }
@@ -292,7 +292,7 @@ impl Payload {
         let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
         let series = [&main.values, &estimates.values].into_iter().chain(delays).chain([&space.values]);
-        let cascade = index.cascade.is_some();
+        let cascade = index.cascade.as_ref().map(CascadeIndex::is_guaranteed);
         Payload { json: harmless_json(&index), block: block(times, series), solid, cascade, notes }
     }
 }

@@ -8,7 +8,7 @@ use super::super::conclusion::Conclusion;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
-use super::sections::{BALANCE_WORDS, answer_style, ending, final_gap, goal_word, is_undecided, so_far, unit_at};
+use super::sections::{BALANCE_WORDS, answer_style, ending, final_gap, so_far, unit_at};
 use super::text::{number, prose};
 
 /// Letters of a title that is set smaller, so that it takes two lines or three.
@@ -34,7 +34,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
             @else { p.ending {
                 span.badge.(class) { (word) }
                 @if let Some(outcome) = record.goal {
-                    @let (class, word) = match goal_word(record, outcome.met) {
+                    @let (class, word) = match record.goal_word(outcome) {
                         "met" => ("good", "Goal met"),
                         "missed" => ("bad", "Goal missed"),
                         _ => ("warn", "Goal undecided"),
@@ -44,7 +44,7 @@ pub(crate) fn header(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -
                 span { (prose(&ending(record, goes_on))) }
             } }
             @if let Some(Conclusion { reached, sentence, advice }) = Conclusion::of(record, metrics) {
-                @let ended = !goes_on && !is_undecided(record);
+                @let ended = !goes_on && !record.is_undecided();
                 p.conclusion {
                     @if goes_on { "so far " } @else if !ended { "when it ended early: " }
                     strong.good[reached && (ended || goes_on)].bad[!reached && ended] { (prose(&sentence)) }

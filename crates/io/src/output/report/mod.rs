@@ -145,7 +145,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
 }
 
 /// The plots; the script fills their cards.
-fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
+fn signals(record: &RunRecord<'_>, cascade: Option<bool>) -> Markup {
     let agents = &record.setup.agents;
     let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
@@ -183,7 +183,10 @@ fn signals(record: &RunRecord<'_>, cascade: bool) -> Markup {
                     (card(&family.id(), &family.title, &family.letters, ""))
                 }
                 @if adaptive { (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no estimate was recorded")) }
-                @if cascade { (card("cascade", "Interval of the cascade", "max − min of all ψ; guaranteed for s ≡ 0 dashed", "")) }
+                @if let Some(guaranteed) = cascade {
+                    @let dashed = if guaranteed { "; guaranteed for s ≡ 0 dashed" } else { "" };
+                    (card("cascade", "Interval of the cascade", &format!("max − min of all ψ{dashed}"), ""))
+                }
                 @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }

@@ -21,20 +21,6 @@ const MOST_TORQUE_ROWS: usize = 64;
 pub(super) const BALANCE_WORDS: &str = "The proof rests on an identity: V loses what the law dissipates, dV/dt = −sᵀKs for most laws. The \
      residual is by how much V + ∫ dissipation strays from that along the run, relative to V; a small one says that the run was computed well.";
 
-/// Whether a run was ended before its horizon by somebody, so that nothing is known of what would have come.
-pub(super) fn is_undecided(record: &RunRecord<'_>) -> bool {
-    matches!(record.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })
-}
-
-/// What became of the goal.
-pub(super) fn goal_word(record: &RunRecord<'_>, met: bool) -> &'static str {
-    match met {
-        true => "met",
-        false if is_undecided(record) => "undecided",
-        false => "missed",
-    }
-}
-
 /// How the run ended, or how far it is.
 pub(super) fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
     if !goes_on {
@@ -138,7 +124,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         @if let Some(outcome) = record.goal.filter(|_| !goes_on) {
             (fact("Goal", html! {
                 (outcome.goal.words()) ": "
-                @match goal_word(record, outcome.met) {
+                @match record.goal_word(outcome) {
                     "met" => strong.good { "met" },
                     "missed" => strong.bad { "missed" },
                     _ => { strong { "undecided" } ", since the run ended early" },

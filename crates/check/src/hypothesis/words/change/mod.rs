@@ -17,8 +17,8 @@ use crate::hypothesis::{
     WeightFault,
 };
 
-/// Edges that are named.
-const EDGES: usize = 4;
+/// Agents that are named.
+const NAMES: usize = 20;
 /// A rate is that of a design for which somebody else answers.
 const SHIPPED: &str = "one of the shipped kinds, of which the parameters tell";
 
@@ -95,14 +95,14 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
 fn joined(groups: &[Vec<Named>]) -> String {
     let mut first = groups.iter().filter_map(|group| group.first());
     let Some(root) = first.next() else { return "an edge that joins the groups".into() };
-    let edges: Vec<String> =
-        first.clone().take(EDGES).map(|agent| format!("from {} to {}", root.name, agent.name)).collect();
-    let more = match first.count().saturating_sub(EDGES) {
+    let others: Vec<&str> = first.map(|agent| agent.name.as_str()).collect();
+    let (named, more) = others.split_at(others.len().min(NAMES));
+    let more = match more.len() {
         0 => String::new(),
-        more => format!(", and {more} more"),
+        more => format!(", and to one agent of each of {more} more groups"),
     };
-    let what = if edges.len() == 1 { "an edge" } else { "edges" };
-    format!("{what} {}{more}, in a graph that recurs", edges.join(", "))
+    let what = if others.len() == 1 { "an edge" } else { "edges" };
+    format!("{what} from {} to {}{more}, in a graph that recurs", root.name, named.join(", "))
 }
 
 fn links(evidence: &LinkEvidence) -> Option<String> {
@@ -207,7 +207,7 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
         FollowingEvidence::Gain { unbounded: true, .. } => "a leader that does not accelerate more and more".into(),
         FollowingEvidence::Gain { for_ever, .. } if for_ever.is_finite() => format!("γ above {}", bound(*for_ever)),
         FollowingEvidence::Gain { seen, .. } => format!(
-            "a leader whose motion can be bounded for all time, and γ above that bound, which is at least {}",
+            "a leader whose motion has no kinks and can be bounded for all time, and γ above that bound, which is at least {}",
             rounded_down(*seen)
         ),
         FollowingEvidence::GainOverTarget { seen, .. } => {

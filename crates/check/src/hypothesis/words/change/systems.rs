@@ -6,7 +6,9 @@ use super::super::names;
 use super::super::numbers::{rounded_down, rounded_up};
 use super::super::robots::edge;
 use super::SHIPPED;
-use crate::hypothesis::{Bounded, FactorEverywhere, KindEvidence, MotionEvidence, ReachSide, RobotEvidence, Term};
+use crate::hypothesis::{
+    Bounded, FactorEverywhere, KindEvidence, MotionEvidence, Named, ReachSide, RobotEvidence, Term,
+};
 
 pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
     Some(match evidence {
@@ -52,7 +54,11 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::AttitudeNotShown { .. } | KindEvidence::HalfTurn => {
             "a start, or an attitude of the target, that is not half a turn away".into()
         }
-        KindEvidence::ThrustKept { .. } | KindEvidence::Rotors { .. } => {
+        KindEvidence::ThrustKept { agent, .. } => format!(
+            "`floor.stops_n` for {} in the place of `floor.kept`: the law then does what it is asked for, and a run ends where it cannot",
+            agent.name
+        ),
+        KindEvidence::Rotors { .. } => {
             "thrusts without ends: these belong to the vehicle, so compare the run with one in which they do not act"
                 .into()
         }
@@ -76,6 +82,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                 "powers with whole exponents, with exponents of {derivatives} or more, or of what is clearly positive, such as 1 + x^2"
             )
         }
+        KindEvidence::FactorBelowFloor { agent, value: 0.0, .. } => away_from_zero(agent),
         KindEvidence::FactorBelowFloor { agent, value, .. } => {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
@@ -96,9 +103,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                     agent.name
                 )
             }
-            FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown => {
-                format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
-            }
+            FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown => away_from_zero(agent),
         },
         KindEvidence::RankDeficient { .. } => "a start at which the Jacobian is not singular".into(),
         KindEvidence::NoTip => "an `end_effector` that the robot has".into(),
@@ -108,8 +113,11 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::LengthsNotAdapted { agent } => {
             format!("`kinematic_gain` above zero for {}, or the true lengths as its estimates", agent.name)
         }
+        KindEvidence::ParameterOutside { value, bounds: [low, _], .. } if value < low => {
+            format!("a lower one of `bounds` of at most {}, since it is {value}", rounded_down(*value))
+        }
         KindEvidence::ParameterOutside { value, .. } => {
-            format!("`bounds` that hold {value}, from {} to {}", rounded_down(*value), rounded_up(*value))
+            format!("an upper one of `bounds` of at least {}, since it is {value}", rounded_up(*value))
         }
         KindEvidence::MomentumPushed => "no torque from outside".into(),
         KindEvidence::TurningTarget => {
@@ -139,6 +147,10 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         | KindEvidence::Matched
         | KindEvidence::Momentum(_) => return None,
     })
+}
+
+fn away_from_zero(agent: &Named) -> String {
+    format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
 }
 
 pub(super) fn robot(evidence: &RobotEvidence) -> Option<String> {

@@ -1,0 +1,171 @@
+//! What `check --practical` says of loops as they are deployed, beside long runs of them.
+
+use std::fs;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::support::{folder, forwardstep, stdout};
+
+/// A loop, the verdict on it, and whether a run of it runs away.
+struct Case {
+    name: &'static str,
+    scenario: String,
+    answer: &'static str,
+    runs_away: bool,
+}
+
+fn case(name: &'static str, scenario: String, answer: &'static str, runs_away: bool) -> Case {
+    Case { name, scenario, answer, runs_away }
+}
+
+fn head(end_s: u32, hz: f64) -> String {
+    format!("format = 2\ntitle = \"a loop\"\n[time]\nend_s = {end_s}\n[control]\nsample_hz = {hz}\n")
+}
+
+/// Three masses without velocity, which adapt from `estimate` kg; true are 1.5.
+fn blind(hz: f64, adaptation: f64, estimate: f64, delay_s: f64) -> String {
+    head(80, hz)
+        + &format!(
+            "[[agents]]\nname = \"m\"\ncount = 3\nrobot.point_mass = {{ dimension = 1, mass_kg = 1.5 }}\n\
+             start.position_m = [[0.3], [-0.8], [0.6]]\n[reference.consensus]\nroots_per_s = [3, 5.1]\nexchange = \"position\"\n\
+             [law.position_only]\ndamping = 5\nfilter_per_s = 5\nadaptation_gain = {adaptation}\nestimate_start_kg = {estimate}\n\
+             [network]\nweight = 8\ndelay.constant_s = {delay_s}\nedges.ring = {{}}\n"
+        )
+}
+
+/// Two double integrators under a known law of this gain.
+fn stiff(gain_per_s: f64) -> String {
+    head(20, 2.0)
+        + &format!(
+            "[[agents]]\nname = \"c\"\ncount = 2\nrobot.chain = {{ order = 2, chi = \"0\", psi = \"1\" }}\n\
+             start = {{ position = [[1.0], [-1.0]], velocity = [[0.1], [0.0]] }}\n[reference.consensus]\nroots_per_s = [1, 2]\n\
+             exchange = \"position\"\n[law.linearising]\ngain_per_s = {gain_per_s}\n[network]\nedges.ring = {{}}\n"
+        )
+}
+
+/// A mass that follows a target and adapts.
+fn tracker(roots: &str, target: &str, adaptation: u32, hz: f64) -> String {
+    head(100, hz)
+        + &format!(
+            "[[agents]]\nname = \"m\"\nrobot.point_mass = {{ dimension = 1, mass_kg = 1.5 }}\nstart.position_m = [0.0]\n\
+             target.formulas = [\"{target}\"]\n[reference.tracking]\nroots_per_s = {roots}\n\
+             [law.adaptive]\ndamping.gain = 10\nadaptation_gain = {adaptation}\n"
+        )
+}
+
+/// Two masses with fast roots, whose joints rub a little or not at all.
+fn rubbing(friction: &str) -> String {
+    head(40, 10.0)
+        + &format!(
+            "[[agents]]\nname = \"a\"\ncount = 2\nrobot.point_mass = {{ dimension = 1, mass_kg = 1.5{friction} }}\n\
+             start.position_m = [[0.7], [-0.4]]\n[reference.consensus]\nroots_per_s = [8, 10]\nexchange = \"position\"\n\
+             [law.adaptive]\ndamping.gain = 8\nadaptation_gain = 0.3\nestimate_start = {{ scaled = 0.8 }}\n\
+             [network]\nweight = 10\nedges.ring = {{}}\n"
+        )
+}
+
+/// Three masses whose torques are late and whose velocities are filtered, each of which hears another for a part of the time.
+fn in_turns() -> String {
+    head(300, 10.0)
+        + "computation_delay_s = 0.09\nvelocity.filtered_difference = { cut_off_hz = 1.5 }\n\
+           [[agents]]\nname = \"a\"\ncount = 3\nrobot.point_mass = { dimension = 1, mass_kg = 1.5 }\nstart.position_m = [[0.7], [-0.4], [0.1]]\n\
+           [reference.consensus]\nroots_per_s = [0.5, 3]\nexchange = \"position_velocity\"\n\
+           [law.adaptive]\ndamping.gain = 8\nadaptation_gain = 0.3\nestimate_start = \"true\"\n[network]\nweight = 3\n\
+           [[network.phases]]\ndwell_s = 0.7\nedges = [[\"a-1\", \"a-2\"]]\n\
+           [[network.phases]]\ndwell_s = 0.5\nedges = [[\"a-2\", \"a-3\"], [\"a-3\", \"a-1\"]]\n"
+}
+
+/// Two chains that adapt while they come to rest.
+fn settling() -> String {
+    head(300, 20.0)
+        + "[[agents]]\nname = \"p\"\ncount = 2\n\
+           robot.strict_feedback = { regressors = [[\"sin(x1)\", \"0\"], [\"0\", \"x2\"]], parameters = [-3, -1] }\n\
+           start = { position = [[1.0], [-0.8]] }\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n\
+           [law.adaptive_backstepping]\ngains_per_s = 2\nadaptation_gain = 4\n[network]\nedges.ring = {}\n"
+}
+
+/// A chain that adapts along a motion which comes back.
+fn swinging() -> String {
+    head(300, 20.0)
+        + "[[agents]]\nname = \"p\"\nrobot.chain = { order = 2, regressor = [\"dx\"], parameters = [-0.5] }\nstart.position = [0.0]\n\
+           target.formulas = [\"sin(t)\"]\n[reference.tracking]\nroots_per_s = [1, 2]\n\
+           [law.linear_adaptive]\ngain_per_s = 2\nadaptation_gain = 50\n"
+}
+
+fn checked(folder: &TempDir, scenario: &str) -> Vec<Value> {
+    fs::write(folder.path().join("loop.toml"), scenario).unwrap();
+    let said = forwardstep(folder, &["check", "loop.toml", "--practical", "--json"]);
+    let document: Value = serde_json::from_str(&stdout(&said)).unwrap();
+    document["practical"]["verdicts"].as_array().unwrap().clone()
+}
+
+fn summary_of_run(folder: &TempDir) -> Value {
+    forwardstep(folder, &["run", "loop.toml", "--out", "run", "--force"]);
+    serde_json::from_str(&fs::read_to_string(folder.path().join("run/summary.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn regress_the_verdict_on_a_deployed_loop_is_that_of_its_run() {
+    let grows = "(1 - exp(-t/20))*sin(3*t)";
+    let cases = [
+        // Linearised with the estimate that they start with, wrong ones grew in continuous time too, which excused what sampling does.
+        case("blind, slow", blind(4.0, 1.0, 0.0, 0.3), "inadequate", true),
+        case("blind, right", blind(16.0, 1.0, 1.5, 0.3), "adequate", false),
+        // Adaptation along a motion, which nothing at rest knows.
+        case("blind, adapting", blind(16.0, 1.0, 3.0, 0.0), "inadequate", true),
+        case("blind, adapting less", blind(16.0, 0.02, 3.0, 0.0), "adequate", false),
+        // Sixteen times as fast it is too slow as well.
+        case("stiff", stiff(100.0), "inadequate", true),
+        case("very stiff", stiff(1000.0), "inadequate", true),
+        case("not stiff", stiff(2.0), "adequate", false),
+        // Targets move, with as many states of the reference as there are roots less one.
+        case("one root", tracker("[1]", grows, 20, 20.0), "inadequate", true),
+        case("two roots", tracker("[1, 2]", grows, 20, 20.0), "inadequate", true),
+        case("three roots", tracker("[1, 2, 3]", grows, 20, 20.0), "inadequate", true),
+        case("two roots, often", tracker("[1, 2]", grows, 20, 500.0), "adequate", false),
+        // Grows in a part of every swing; the run says that the rest makes up for it.
+        case("swings", tracker("[1, 2]", "2*sin(3*t)", 1, 20.0), "not shown", false),
+        case("rubs", rubbing(", friction.smooth = { coulomb = [0.01], width = 0.05 }"), "inadequate", true),
+        case("rubs dry", rubbing(", friction.dry = { coulomb = [0.01] }"), "inadequate", true),
+        case("does not rub", rubbing(""), "inadequate", true),
+        case("in turns", in_turns(), "not shown", false),
+        case("settles", settling(), "adequate", false),
+        case("comes back", swinging(), "adequate", false),
+    ];
+    let folder = folder();
+    for Case { name, scenario, answer, runs_away } in cases {
+        let verdicts = checked(&folder, &scenario);
+        let whole = verdicts.iter().find(|verdict| verdict["id"] == "whole-loop").unwrap_or_else(|| panic!("{name}"));
+        assert_eq!(whole["answer"], answer, "{name}: {whole}");
+        let bounds = verdicts.iter().any(|verdict| verdict["id"] == "tracking-power" && verdict["answer"] == "bound");
+        assert!(!(bounds && answer == "inadequate"), "{name}: {verdicts:?}");
+        let summary = summary_of_run(&folder);
+        let last = summary["metrics"]["disagreement"]["measured"]["last"].as_f64();
+        let is_away = summary["ending"]["kind"] == "broke_down" || last.is_none_or(|last| last > 1e3);
+        assert_eq!(is_away, runs_away, "{name}: {} {last:?}", summary["ending"]);
+        assert!(is_away || last < Some(0.3), "{name}: {last:?}");
+    }
+}
+
+/// Whether rows stand at samples, where s is what is left of it, or between them: the mean is that of the balance.
+#[test]
+fn regress_the_mean_power_is_that_between_samples_wherever_rows_are() {
+    let folder = folder();
+    let scenario = head(90, 10.0)
+        + "[[agents]]\nname = \"a\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 1.5 }\nstart.position_m = [[0.6], [-0.2]]\n\
+           [reference.consensus]\nroots_per_s = [0.7]\nexchange = \"position\"\n[law.known]\ndamping.gain = 20\n[network]\nweight = 0.5\nedges.ring = {}\n";
+    let mut means = Vec::new();
+    for every_s in [0.1, 0.05, 0.013] {
+        let text = scenario.replace("[control]", &format!("record_every_s = {every_s}\n[control]"));
+        let verdicts = checked(&folder, &text);
+        let power = verdicts.iter().find(|verdict| verdict["id"] == "tracking-power").unwrap();
+        let bound = power["numbers"]["mean_w"].as_f64().unwrap();
+        let reached = summary_of_run(&folder)["metrics"]["watched"]["tracking_power"].clone();
+        let mean = reached["mean_w"].as_f64().unwrap();
+        assert!(mean < bound && mean > 0.2 * bound, "{every_s} s: {mean} W of {bound} W");
+        assert!(mean < reached["bound_w"].as_f64().unwrap(), "{reached}");
+        means.push(mean);
+    }
+    assert!(means.iter().all(|mean| (mean / means[0] - 1.0).abs() < 0.05), "{means:?}");
+}
