@@ -9,7 +9,7 @@ use super::place::{FASTER, ideal};
 use crate::prediction::trial;
 
 /// Periods that are tried at most.
-const PERIODS: f64 = 1024.0;
+const PERIODS: f64 = 2048.0;
 /// Work for them, in nanoseconds, roughly.
 const WORK: f64 = 4e8;
 /// What is larger than that beside where agents start has run away.
