@@ -2,8 +2,8 @@
 //!
 //! A [`Robot`] is a plant as data, a [`Law`] what controls it. Each says as data what it is and can do, [`RobotInterface`] and
 //! [`Interface`]. Features (pushes, targets, offsets, sampling, verdicts, tables) ask these; none of them asks what kind of system
-//! it has before it. No method has a default body but those about estimates, which are none, and what an interface does not state, its system cannot do: a feature that
-//! asks for it is refused.
+//! it has before it. No method has a default body but those about estimates, which are none, and what an interface does not state, its
+//! system cannot do: a feature that asks for it is refused.
 
 use std::any::Any;
 use std::fmt::Debug;

@@ -18,18 +18,20 @@
 //!   |μ| = 1, and J decays, every mode that passes on means of what is heard decays or stays, since a late link multiplies by
 //!   μ^(−k), which is smaller still outside the circle. G(1) = 1: agreement.
 //!
-//! Sampled sixteen times as fast, or as much faster as it takes until a rate changes no more, with measured velocities and commands that act at
-//! once, the same agent has a rate and a radius of its own: what is no worse than that is no matter of sampling. A mode that overshoots from sample to sample, Re μ < 0, as 1 − h λ does for h λ > 1, or
-//! that decays half as fast as it would, is near to one that grows.
+//! Sampled sixteen times as fast, or as much faster as it takes until a rate changes no more, with measured velocities and commands that
+//! act at once, the same agent has a rate and a radius of its own: what is no worse than that is no matter of sampling. A mode that
+//! overshoots from sample to sample, Re μ < 0, as 1 − h λ does for h λ > 1, or that decays half as fast as it would, is near to one that
+//! grows.
 //!
-//! All of it is local. It is looked at where a run starts, and where its references lead, with s ≡ 0: what lasts is there. Consensus
-//! comes to rest, and its last state counts; along the motion of a target it is the mean of r, an estimate as for any loop that changes
-//! with time. Agents under other laws are looked at again after some periods by themselves, over all of them where they follow a target, and
-//! a trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its
-//! largest weights; what grows then is not shown to, nor is what would have been seen in a trial that lasts to the end of the run. A loop that is bad at the start alone is left
-//! before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last state is looked at again with
-//! those that may be reached: at their upper bounds, or without bounds as they start. A loop that grows there may do so after it has
-//! drifted, unless the ideal one does too, which adaptation keeps from it. All of it but the trial is without friction.
+//! All of it is local. It is looked at where a run starts, and where its references lead, with s ≡ 0: what lasts is there. Consensus comes
+//! to rest, and its last state counts; along the motion of a target it is the mean of r, an estimate as for any loop that changes with
+//! time. Agents under other laws are looked at again after some periods by themselves, over all of them where few numbers follow a target; a
+//! trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its largest weights;
+//! what grows then is not shown to, nor is what would have been seen in a trial that lasts to the end of the run. A loop that is bad at
+//! the start alone is left before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last
+//! state is looked at again with those that may be reached: at their upper bounds, or without bounds as they start. A loop that grows
+//! there may do so after it has drifted, unless the ideal one does too, which adaptation keeps from it. All of it but the trial is without
+//! friction.
 
 mod linear;
 mod network;
@@ -171,7 +173,8 @@ impl WholeLoop {
     }
 
     /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong estimates, or
-    /// too slowly to be seen, or where one overshoots or is slowed; not shown where one may grow in some network, would if the largest weights stayed, or would have been seen to in the trial.
+    /// too slowly to be seen, or where one overshoots or is slowed; not shown where one may grow in some network, would if the largest
+    /// weights stayed, or would have been seen to in the trial.
     pub fn answer(&self) -> PracticalAnswer {
         if self.trial.lost_s.is_some() {
             return PracticalAnswer::Inadequate;
