@@ -1687,23 +1687,23 @@ def too_small(claim, node, low, high, words):
     zero = claim.id == "bounded-weights"
     settled(node, high < 0 or zero and high == 0, high < INF and (low > 0 or low == 0 and not zero), f"{words} [{said(low)}, {said(high)}]")
 
-# The formula of an edge that some edge follows at all late times: what others do while they are not there says nothing.
-def always(claim, edge):
+# The formula of an edge that some edge follows at all late times, or again and again: what others do while they are not there says nothing.
+def lasting(claim, edge, how=all):
     text, graphs = followed(claim, claim.scenario.edge_at(edge)), [claim.scenario.graphs[k] for k in claim.scenario.recurring()]
-    return formula(require(edge, all(text in [followed(claim, e) for e in graph] for graph in graphs), "is not always there", text))
+    return formula(require(edge, how(text in [followed(claim, e) for e in graph] for graph in graphs), "is not always there", text))
 
 # A time at which a weight is not positive, or a delay is negative.
 @rule("bounded-weights bounded-delays", "below")
 def below(claim, t_s, edge):
     require(t_s, t_s.number() >= 0, "is before the start")
-    too_small(claim, t_s, *enclose(always(claim, edge), (t_s.number(),) * 2), "is no such time:")
+    too_small(claim, t_s, *enclose(lasting(claim, edge), (t_s.number(),) * 2), "is no such time:")
 
 # As t → ∞ a weight comes to zero, becomes negative or exceeds every bound; a delay exceeds every bound or becomes negative.
 @rule("bounded-weights bounded-delays", "limit")
 def far_away(claim, edge):
-    tree = always(claim, edge)
-    # It exceeds every bound again and again, in one direction or the other.
-    if not grows(tree): too_small(claim, edge, *limit(tree), "stays near")
+    tree = lasting(claim, edge, any)
+    # It exceeds every bound again and again, in one direction or the other: for that the edge has to be there always.
+    lasting(claim, edge) if grows(tree) else too_small(claim, edge, *limit(tree), "stays near")
 
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):

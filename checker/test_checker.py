@@ -1799,12 +1799,17 @@ class FalseProofs(unittest.TestCase):
         def violated(kind, **more):
             return lambda entry: entry.update(answer="violated", proof={"kind": kind, "edge": [*ring[0], 1], **more})
 
-        for first, hypothesis, claim in (
-                ('weight = "exp(-t)"', each, violated("limit")), ('weight = "1 + t"', each, violated("limit")),
-                ('weight = "1.2 - t"', each, violated("below", t_s="2")), ('delay.formula_s = "t"', "bounded-delays", violated("limit"))):
-            for how in ("once", "repeat"):
-                self.rejected(name, hypothesis, "is not always there", claim, (network, phases(first, how)))
+        for first, hypothesis, claim, comes_back in (
+                ('weight = "exp(-t)"', each, violated("limit"), True), ('weight = "1 + t"', each, violated("limit"), False),
+                ('weight = "1.2 - t"', each, violated("below", t_s="2"), False), ('delay.formula_s = "t"', "bounded-delays", violated("limit"), False)):
+            self.rejected(name, hypothesis, "is not always there", claim, (network, phases(first, "once")))
             self.accepted(name, hypothesis, claim, (network, staying(first)))
+            # What has a limit comes near to it whenever it comes back; of what grows the checker asks that it always is there.
+            again = (name, hypothesis, claim, (network, phases(first, "repeat")))
+            self.accepted(*again) if comes_back else self.rejected(name, hypothesis, "is not always there", *again[2:])
+        swings, each = 'delay.formula_s = "abs(t*sin(t))"', "bounded-delays"
+        self.accepted(name, each, violated("limit"), (network, staying(swings)))
+        self.rejected(name, each, "is not always there", violated("limit"), (network, phases(swings, "repeat")))
 
     def test_couplings_of_no_theorem(self):
         saturated = ("[network]", "[network]\ncoupling.saturated = 0.01\n")

@@ -4,12 +4,13 @@
 //! jitter makes them, but packets arrive a finite number of times in a bounded time, and how short a piece is plays no part
 //! where the theorems use the delay, under integrals. What can fail is the bound.
 
-use forwardstep_core::expression::Interval;
+use forwardstep_core::expression::{Expression, Interval};
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Basis, Delay, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 
+use crate::certificate::limit::{Limit, limit};
 use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
 
 /// The delays of links that are used.
@@ -17,15 +18,32 @@ fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
     setup.network.used_delays().filter_map(|index| setup.network.delays.get(index))
 }
 
-/// Whether there is such an edge at all late times: what a formula does while no edge follows it says nothing.
-pub(crate) fn lasts(setup: &Setup, is_it: impl Fn(&Edge) -> bool) -> bool {
-    setup.network.schedule.recurring_graphs().iter().all(|graph| graph.iter().any(&is_it))
+/// Whether what a formula does in the end refutes it, where such edges follow it: one is there at all late times; or one comes back again and
+/// again, and the formula falls below every bound or has a limit that is `bad`. What it does while no edge follows it says nothing.
+pub(crate) fn refutes(
+    setup: &Setup,
+    formula: Option<&Expression>,
+    is_it: impl Fn(&Edge) -> bool,
+    bad: impl Fn(Interval) -> bool,
+) -> bool {
+    let graphs = setup.network.schedule.recurring_graphs();
+    let is_there = |graph: &Vec<Edge>| graph.iter().any(&is_it);
+    let settles = |formula: &Expression| match limit(formula) {
+        Limit::Down => true,
+        Limit::Near(within) => bad(within),
+        Limit::Up | Limit::Unknown => false,
+    };
+    graphs.iter().all(is_there) || graphs.iter().any(is_there) && formula.is_none_or(settles)
 }
 
-/// The delays of which some link has each at all late times.
+/// The delays that can be refuted by what they do in the end.
 fn lasting_delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
-    let those = setup.network.used_delays().filter(|index| lasts(setup, |edge| edge.delay == *index));
-    those.filter_map(|index| setup.network.delays.get(index))
+    let used = setup.network.used_delays().filter_map(|index| Some((index, setup.network.delays.get(index)?)));
+    let lasts = |(index, delay): &(usize, &Delay)| {
+        let formula = delay.downcast().map(BoundedFormula::formula);
+        refutes(setup, formula, |edge| edge.delay == *index, |within| within.high < 0.0)
+    };
+    used.filter(lasts).map(|(_, delay)| delay)
 }
 
 pub(crate) fn bounded_delays(setup: &Setup) -> Hypothesis {
@@ -97,21 +115,25 @@ pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
     Hypothesis::new(Id::NoDelay, evidence)
 }
 
-/// The formulas that weights of edges follow, each once, without those that are constant.
-pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
-    weights(setup, |is_it| setup.network.schedule.graphs.iter().flatten().any(is_it))
-}
-
-/// Those of which some edge follows each at all late times.
-fn lasting_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
-    weights(setup, |is_it| lasts(setup, is_it))
-}
-
-/// Formulas that vary, and are used as this says of the edges that follow one.
-fn weights(setup: &Setup, is_used: impl Fn(&dyn Fn(&Edge) -> bool) -> bool) -> impl Iterator<Item = &BoundedFormula> {
+/// The formulas that weights of edges follow, each once, without those that are constant; with their numbers.
+fn numbered_weights(setup: &Setup) -> impl Iterator<Item = (usize, &BoundedFormula)> {
     let varying = setup.network.weights.iter().enumerate().filter(|(_, formula)| formula.constant().is_none());
-    let used = varying.filter(move |(index, _)| is_used(&|edge| edge.weight == Weight::Formula(*index)));
-    used.map(|(_, formula)| formula)
+    let edges = || setup.network.schedule.graphs.iter().flatten();
+    varying.filter(move |(index, _)| edges().any(|edge| edge.weight == Weight::Formula(*index)))
+}
+
+/// The same without.
+pub(crate) fn varying_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
+    numbered_weights(setup).map(|(_, formula)| formula)
+}
+
+/// Those that can be refuted by what they do in the end.
+fn lasting_weights(setup: &Setup) -> impl Iterator<Item = &BoundedFormula> {
+    let lasts = |(index, weight): &(usize, &BoundedFormula)| {
+        let follows = |edge: &Edge| edge.weight == Weight::Formula(*index);
+        refutes(setup, Some(weight.formula()), follows, |within| within.high <= 0.0)
+    };
+    numbered_weights(setup).filter(lasts).map(|(_, weight)| weight)
 }
 
 /// What a nonlinear coupling must be like for the argument of Theorem 3.

@@ -161,7 +161,10 @@ fn eq_43_a_factor_of_the_input_holds_where_it_keeps_away_from_zero_in_every_stat
     assert_eq!(of(-x().power(2.0) - 0.25).0, Answer::Holds);
     // Positive, but as small as one likes; of both signs; below the floor of 1e-3.
     let (answered, because) = of((-x().power(2.0)).exp_of());
-    assert!(answered == Answer::Watched && because.ends_with("may come close to zero far away"), "{because}");
+    assert!(
+        answered == Answer::Watched && because.ends_with("that it keeps away from zero far away was not shown"),
+        "{because}"
+    );
     let (answered, because) = of(x() - 0.7);
     assert!(answered == Answer::Watched && because.ends_with("comes to zero in the state (0.7)"), "{because}");
     assert_eq!(of(x().power(2.0) + 1e-4).0, Answer::Watched);
@@ -429,7 +432,7 @@ fn the_linearised_period_tells_which_laws_settle_when_they_are_sampled() {
         (tracking(blind_mass(1.0, 2.0), vec![rest_at(0.2)]), (0.05, Marginal), 0.1),
         (tracking(blind_mass(1.0, 2.0), vec![rest_at(0.2)]), (0.01, Adequate), 0.1),
         (tracking(planar_tip(), vec![rest_at(0.9), rest_at(1.0)]), (0.01, Marginal), 0.05),
-        (tracking(chain(&psi, 1, true), vec![rest_at(0.2)]), (0.4, Adequate), 0.8),
+        (tracking(chain(&psi, 1, true), vec![rest_at(0.2)]), (0.4, Marginal), 0.8),
         (tracking(chain(&psi, 1, false), vec![rest_at(0.2)]), (0.4, Marginal), 0.8),
         (tracking(cascade, vec![rest_at(0.2)]), (0.8, Marginal), 1.6),
     ] {

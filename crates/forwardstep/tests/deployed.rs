@@ -113,12 +113,13 @@ fn regress_the_verdict_on_a_deployed_loop_is_that_of_its_run() {
         case("blind, slow", blind(4.0, 1.0, 0.0, 0.3), "inadequate", true),
         case("blind, right", blind(16.0, 1.0, 1.5, 0.3), "adequate", false),
         // Adaptation along a motion, which nothing at rest knows.
-        case("blind, adapting", blind(16.0, 1.0, 3.0, 0.0), "inadequate", true),
-        case("blind, adapting less", blind(16.0, 0.02, 3.0, 0.0), "adequate", false),
+        case("blind, adapting", blind(8.0, 1.0, 3.0, 0.0), "inadequate", true),
+        // With what it estimates at first a mode would grow by sampling; it does not keep to that.
+        case("blind, adapting, twice as often", blind(16.0, 1.0, 3.0, 0.0), "marginal", false),
         // Sixteen times as fast it is too slow as well.
         case("stiff", stiff(100.0), "inadequate", true),
         case("very stiff", stiff(1000.0), "inadequate", true),
-        case("not stiff", stiff(2.0), "adequate", false),
+        case("not stiff", stiff(2.0), "marginal", false),
         // Targets move, with as many states of the reference as there are roots less one.
         case("one root", tracker("[1]", grows, 20, 20.0), "inadequate", true),
         case("two roots", tracker("[1, 2]", grows, 20, 20.0), "inadequate", true),

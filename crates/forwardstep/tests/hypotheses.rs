@@ -374,7 +374,7 @@ fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
     };
     assert_eq!(*value, 1.0);
     assert_eq!((agent.index, &*agent.name), (0, "arm"));
-    assert_eq!(outside.because(), format!("{name} of arm is 1, which is outside"));
+    assert_eq!(outside.because(), format!("{name} of arm is 1, which is outside 0.5 to 0.9"));
 }
 
 #[test]

@@ -17,7 +17,7 @@ use super::limit::{Limit, limit};
 use super::producers::Claim;
 use super::proof::{Enclosure, GivenAge, Proof};
 use crate::Answer;
-use crate::links::lasts;
+use crate::links::refutes;
 
 /// Times at which a formula is looked at for a witness, and how many of them there are in a second.
 const LOOKS: u32 = 100_000;
@@ -61,12 +61,16 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
 
 /// A delay that exceeds every bound or becomes negative, or a link that loses every packet.
 fn late_for_ever(setup: &Setup) -> Option<Proof> {
-    edges(setup).filter(|(_, edge)| lasts(setup, |other| other.delay == edge.delay)).find_map(|(phase, edge)| {
+    edges(setup).find_map(|(phase, edge)| {
         let (delay, at) = (setup.network.delays.get(edge.delay)?, (edge.from, edge.to, phase));
-        if delay.known().refuted == Some(Refuted::EveryPacketLost) {
+        let comes_back = || refutes(setup, None, |other| other == edge, |_| false);
+        if delay.known().refuted == Some(Refuted::EveryPacketLost) && comes_back() {
             return Some(Proof::LosesAll(at));
         }
         let formula = delay.downcast::<BoundedFormula>()?.formula();
+        if !refutes(setup, Some(formula), |other| other.delay == edge.delay, |within| within.high < 0.0) {
+            return None;
+        }
         match limit(formula) {
             Limit::Up | Limit::Down => Some(Proof::Limit(at)),
             Limit::Near(within) if within.high < 0.0 => Some(Proof::Limit(at)),
@@ -79,9 +83,12 @@ fn late_for_ever(setup: &Setup) -> Option<Proof> {
 
 /// A weight that comes to zero, becomes negative, or grows without bound.
 fn fading(setup: &Setup) -> Option<Proof> {
-    edges(setup).filter(|(_, edge)| lasts(setup, |other| other.weight == edge.weight)).find_map(|(phase, edge)| {
+    edges(setup).find_map(|(phase, edge)| {
         let Weight::Formula(index) = edge.weight else { return None };
         let (formula, at) = (setup.network.weights.get(index)?.formula(), (edge.from, edge.to, phase));
+        if !refutes(setup, Some(formula), |other| other.weight == edge.weight, |within| within.high <= 0.0) {
+            return None;
+        }
         match limit(formula) {
             Limit::Up | Limit::Down => Some(Proof::Limit(at)),
             Limit::Near(within) if within.high <= 0.0 => Some(Proof::Limit(at)),

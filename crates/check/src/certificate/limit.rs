@@ -7,7 +7,7 @@ use super::ratio::Ratio;
 
 /// Where a formula goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Limit {
+pub(crate) enum Limit {
     /// All its limit points lie in this bounded interval.
     Near(Interval),
     /// Above every bound.
@@ -19,7 +19,7 @@ pub(super) enum Limit {
 }
 
 /// Where `formula` goes.
-pub(super) fn limit(formula: &Expression) -> Limit {
+pub(crate) fn limit(formula: &Expression) -> Limit {
     formula.fold(&mut Limits).limit
 }
 

@@ -13,7 +13,7 @@ mod enclosure;
 mod exact;
 mod gains;
 mod late;
-mod limit;
+pub(crate) mod limit;
 mod motions;
 mod numbers;
 mod producers;
