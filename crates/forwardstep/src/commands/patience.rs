@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::console::remark;
 
-/// A silence up to this needs no word.
+/// How long nothing needs to be said.
 const AFTER: Duration = Duration::from_secs(5);
 
 /// Says a sentence once, if it is still there after some seconds.
