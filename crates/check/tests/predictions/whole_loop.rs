@@ -5,7 +5,7 @@ use std::sync::Arc;
 use forwardstep_check::{Finding, PracticalAnswer, WholeLoop, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
-use forwardstep_sim::drives::JointDrives;
+use forwardstep_sim::drives::{JointDrives, JointFriction};
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{Adaptive, Exchange, Known, Setup, TimeSpan, VelocitySensor, simulate};
@@ -307,4 +307,47 @@ fn regress_an_agent_that_runs_away_by_itself_is_not_left_out() {
     let [fast, slow] = [at(20.0), at(0.3)].map(|setup| WholeLoop::of(&setup).expect("it has numbers at its start"));
     assert_eq!((fast.trial.lost_s, fast.answer()), (None, PracticalAnswer::Adequate), "{fast:?}");
     assert!(slow.trial.lost_s.is_some() && slow.answer() == PracticalAnswer::Inadequate, "{slow:?}");
+}
+
+/// A target that comes to swing: the start says nothing of it, whatever the order of the reference is.
+#[test]
+fn regress_targets_are_looked_at_along_their_way_whatever_the_number_of_roots_is() {
+    let t = || Expression::variable(0);
+    let swings = || formula((Expression::number(1.0) - (t() * -0.05).exp_of()) * (t() * 3.0).sin_of());
+    for roots in [vec![1.0], vec![1.0, 2.0], vec![1.0, 2.0, 3.0]] {
+        let mut agent = arm(0, &roots);
+        agent.robot.kind = Arc::new(forwardstep_core::robot::PointMass { dimension: 1 });
+        agent.robot.axes.truncate(1);
+        (agent.robot.theta, agent.robot.theta_names) = (vec![1.5], vec!["mass".into()]);
+        let (damping, adaptation) = (Gain::Number(10.0), Gain::Number(20.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.0], bounds: None });
+        (agent.start.q, agent.start.dq) = (vec![0.0], vec![0.0]);
+        let mut setup = tracking(agent, vec![swings()]);
+        setup.time.end_s = 100.0;
+        // Linear maps alone, without a trial.
+        let [slow, fast] = [20.0, 2000.0].map(|hz| WholeLoop::of(&setup.clone().sampled(hz)).expect("it has numbers"));
+        assert_eq!((slow.led.len(), slow.start_per_s()), (4, None), "{roots:?}: {slow:?}");
+        assert_eq!(slow.answer(), PracticalAnswer::Inadequate, "{roots:?}: {slow:?}");
+        assert!(fast.answer() < PracticalAnswer::Inadequate, "{roots:?}: {fast:?}");
+    }
+}
+
+/// Friction holds back what is small, and is no slope of what grows.
+#[test]
+fn regress_the_loop_of_joints_that_rub_is_that_without_friction() {
+    let looped = |friction: Option<JointFriction>| {
+        let mut setup = two([5.0, 10.0], 1.5, 4.0);
+        for agent in &mut setup.agents {
+            let drives = JointDrives { friction: friction.clone(), ..JointDrives::default() };
+            agent.robot = agent.robot.clone().with_drives(&drives).expect("a mass has axes");
+        }
+        let found = WholeLoop::of(&setup).expect("it has numbers");
+        (found.agents, found.lasting_per_s().expect("a mode grows"))
+    };
+    let smooth = looped(None);
+    for (coulomb, dry_s) in [(0.01, None), (5.0, None), (5.0, Some(1e-3))] {
+        let (agents, rate) = looped(Some(JointFriction { coulomb: vec![coulomb; 2], width: vec![0.01; 2], dry_s }));
+        assert_eq!(agents, smooth.0);
+        assert!((rate - smooth.1).abs() < 1e-3 * smooth.1, "{coulomb}: {rate} and {smooth:?}");
+    }
 }
