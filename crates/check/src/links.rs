@@ -4,36 +4,18 @@
 //! jitter makes them, but packets arrive a finite number of times in a bounded time, and how short a piece is plays no part
 //! where the theorems use the delay, under integrals. What can fail is the bound.
 
-use forwardstep_core::expression::{Expression, Interval};
+use forwardstep_core::expression::Interval;
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Basis, Delay, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 
-use crate::certificate::limit::{Limit, limit};
+use crate::certificate::refutes;
 use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
 
 /// The delays of links that are used.
 fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
     setup.network.used_delays().filter_map(|index| setup.network.delays.get(index))
-}
-
-/// Whether what a formula does in the end refutes it, where such edges follow it: one is there at all late times; or one comes back again and
-/// again, and the formula falls below every bound or has a limit that is `bad`. What it does while no edge follows it says nothing.
-pub(crate) fn refutes(
-    setup: &Setup,
-    formula: Option<&Expression>,
-    is_it: impl Fn(&Edge) -> bool,
-    bad: impl Fn(Interval) -> bool,
-) -> bool {
-    let graphs = setup.network.schedule.recurring_graphs();
-    let is_there = |graph: &Vec<Edge>| graph.iter().any(&is_it);
-    let settles = |formula: &Expression| match limit(formula) {
-        Limit::Down => true,
-        Limit::Near(within) => bad(within),
-        Limit::Up | Limit::Unknown => false,
-    };
-    graphs.iter().all(is_there) || graphs.iter().any(is_there) && formula.is_none_or(settles)
 }
 
 /// The delays that can be refuted by what they do in the end.

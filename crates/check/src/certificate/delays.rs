@@ -13,11 +13,10 @@ use num_traits::Zero;
 
 use super::enclosure::steady;
 use super::exact::above;
-use super::limit::{Limit, limit};
+use super::limit::{Limit, limit, refutes};
 use super::producers::Claim;
 use super::proof::{Enclosure, GivenAge, Proof};
 use crate::Answer;
-use crate::links::refutes;
 
 /// Times at which a formula is looked at for a witness, and how many of them there are in a second.
 const LOOKS: u32 = 100_000;

@@ -1,13 +1,15 @@
 //! Where a formula goes as t → ∞, by the rules that a checker has: what refutes a bound for ever.
 
 use forwardstep_core::expression::{Algebra, Binary, Expression, Interval, Number, Unary};
+use forwardstep_sim::Setup;
+use forwardstep_sim::graph::Edge;
 
 use super::late::{of, to_power, twice, whole};
 use super::ratio::Ratio;
 
 /// Where a formula goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Limit {
+pub(super) enum Limit {
     /// All its limit points lie in this bounded interval.
     Near(Interval),
     /// Above every bound.
@@ -18,8 +20,26 @@ pub(crate) enum Limit {
     Unknown,
 }
 
+/// Whether what a formula does in the end refutes it, where such edges follow it: one is there at all late times; or one comes back again and
+/// again, and the formula falls below every bound or has a limit that is `bad`. What it does while no edge follows it says nothing.
+pub(crate) fn refutes(
+    setup: &Setup,
+    formula: Option<&Expression>,
+    is_it: impl Fn(&Edge) -> bool,
+    bad: impl Fn(Interval) -> bool,
+) -> bool {
+    let graphs = setup.network.schedule.recurring_graphs();
+    let is_there = |graph: &Vec<Edge>| graph.iter().any(&is_it);
+    let settles = |formula: &Expression| match limit(formula) {
+        Limit::Down => true,
+        Limit::Near(within) => bad(within),
+        Limit::Up | Limit::Unknown => false,
+    };
+    graphs.iter().all(is_there) || graphs.iter().any(is_there) && formula.is_none_or(settles)
+}
+
 /// Where `formula` goes.
-pub(crate) fn limit(formula: &Expression) -> Limit {
+pub(super) fn limit(formula: &Expression) -> Limit {
     formula.fold(&mut Limits).limit
 }
 

@@ -13,7 +13,7 @@ mod enclosure;
 mod exact;
 mod gains;
 mod late;
-pub(crate) mod limit;
+mod limit;
 mod motions;
 mod numbers;
 mod producers;
@@ -30,6 +30,7 @@ use forwardstep_sim::Setup;
 use num_rational::BigRational;
 
 pub use exact::decimal;
+pub(crate) use limit::refutes;
 pub(crate) use motions::at_start;
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
 
