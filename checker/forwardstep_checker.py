@@ -25,9 +25,10 @@
 #     scenario states and nothing else, and a claim that rests on them reaches to the end of the run only.
 #     The edges of a random graph are given, too, and stay: they are held against the rule that draws them.
 #  5. That a weight or a delay which is an irrational constant runs as the double next to it, which is what is judged here.
-#  6. That antiderivatives, of immersion and invariance, have their regressors as slopes; that an equation of a chain in feedback form
-#     has states up to its own, or to the next, alone; and that lists which stand for vectors have as many entries as the robot needs.
-#     forwardstep refuses other scenarios; this file does not look.
+#  6. That forwardstep reads the scenario: what has no meaning it refuses, and this file looks at what a proof uses. Antiderivatives, of
+#     immersion and invariance, have their regressors as slopes; an equation of a chain in feedback form has states up to its own, or to
+#     the next, alone, and others have those of their order; lists which stand for vectors have as many entries as the robot needs, agents
+#     that agree have as many axes as one another, and a table has no keys that are those of another design.
 # What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
 # Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
@@ -1562,14 +1563,14 @@ def pieces(node, tree, end_s):
 
 # Checks, piece by piece, that a formula keeps within limits, as what is stated has to: within what is stated, or, where what is found
 # here is wider, within the limits all the same. No value that is seen may lie outside of what is stated. Gives the last piece.
-def enclosed(claim, node, tree, limits, words):
+def enclosed(claim, node, tree, limits, words, end_s=False):
     node.only("range", "cells", "until_s", "within", "edge")
     within, doubt = node.field("within"), ""
     ends = [end.number() for end in within.each()]
     require(within, len(ends) == 2, "must have two ends")
     require(within, limits(*ends), words)
     fits = lambda found: ends[0] <= found[0] and found[1] <= ends[1]
-    for piece in pieces(node, tree, claim.scenario.end_s):
+    for piece in pieces(node, tree, end_s or claim.scenario.end_s):
         found = enclose(tree, piece)
         if fits(found) or fits(found := common(found, attempt(straight, tree, piece) or WHOLE)): continue
         for t in (piece[0] + (2**k - 1 if infinite(piece[1]) else (piece[1] - piece[0]) * k / 8) for k in range(9)):
@@ -1585,18 +1586,20 @@ def straight(tree, piece):
 
 def lasts(node): return node.field("range").text() != "run"
 
-# Encloses the formulas of all edges within limits, each named by an edge; whether for ever, and all are uniformly continuous.
+# Encloses the formulas of all edges within limits, each named by an edge; whether for ever, and all are uniformly continuous. What
+# no edge follows any more from the last switch on counts until then, instead of the run, where it is continuous.
 def formulas(claim, node, limits, words):
-    found = {None: True}
+    scenario, found = claim.scenario, {None: True}
+    stay = {followed(claim, edge) for k in scenario.recurring() for edge in scenario.graphs[k]}
     for entry in node.each():
-        text = followed(claim, claim.scenario.edge_at(entry.field("edge")))
-        if text is None: continue  # What is constant, though by a formula, needs no enclosure.
-        tree = formula(text)
-        last = enclosed(claim, entry, tree, limits, f"lets `{text}` {words}")
+        # What is constant, though by a formula, needs no enclosure.
+        if (text := followed(claim, scenario.edge_at(entry.field("edge")))) is None: continue
+        last = enclosed(claim, entry, tree := formula(text), limits, f"lets `{text}` {words}", text not in stay and sum(scenario.dwell))
         # A formula that repeats, and has a value everywhere, is uniformly continuous.
-        found[text] = lasts(entry) and (entry.field("range").text() == "period" or steady(resolved(tree, END), last))
+        found[text] = text not in stay or lasts(entry) and (
+            entry.field("range").text() == "period" or steady(resolved(tree, END), last))
         decided(found[text] or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
-    for text in {followed(claim, edge) for edge in claim.scenario.used()}: require(node, text in found, f"lacks `{text}`")
+    for text in {followed(claim, edge) for edge in scenario.used()}: require(node, text in found, f"lacks `{text}`")
     return all(found.values())
 
 # The formula that the weight or delay of an edge follows, as a text; else None.

@@ -1811,6 +1811,19 @@ class FalseProofs(unittest.TestCase):
         self.accepted(name, each, violated("limit"), (network, staying(swings)))
         self.rejected(name, each, "is not always there", violated("limit"), (network, phases(swings, "repeat")))
 
+        # While it is there it has bounds, from the start to the switch, and no longer.
+        def stays(low, high, **more):
+            within = {"range": "run", "cells": 8, "within": [low, high], "edge": [*ring[0], 1], **more}
+            return lambda entry: entry.update(answer="holds", proof={"kind": "weights", "enclosures": [within]})
+
+        each = "bounded-weights"
+        for first, right, wrong in ('weight = "1 + t"', ("1", "2"), ("1", "1.99")), ('weight = "exp(-t)"', ("0.36", "1"), ("0.38", "1")):
+            once = (network, phases(first, "once"))
+            self.accepted(name, each, stays(*right), once)
+            self.rejected(name, each, "does not hold", stays(*wrong), once)
+            for lasts in phases(first, "repeat"), staying(first):
+                self.assertNotIn(checker.ACCEPTED, [outcome for outcome, _ in self.judged(name, each, stays("1e-20", "100"), (network, lasts))[0]])
+
     def test_couplings_of_no_theorem(self):
         saturated = ("[network]", "[network]\ncoupling.saturated = 0.01\n")
         for name, each in (("theorem-8", "sign-gain"), ("theorem-2", "real-roots"), ("remark-12", "sign-gain")):

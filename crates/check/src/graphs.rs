@@ -1,6 +1,6 @@
 //! What is found of graphs and their schedule.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{Edge, SpanningTree, Weight, spanning_tree as tree};
@@ -145,15 +145,18 @@ fn only_delays_change(schedule: &Schedule) -> bool {
 pub(crate) fn mutual_weights(setup: &Setup) -> Hypothesis {
     let leader = setup.leader();
     let among = |edge: &&Edge| Some(edge.from) != leader;
-    let one_way = setup.network.schedule.graphs.iter().find_map(|graph| {
+    let one_way = setup.network.schedule.graphs.iter().flat_map(|graph| {
         let weights: HashMap<(usize, usize), Weight> =
             graph.iter().map(|edge| ((edge.from, edge.to), edge.weight)).collect();
-        let returned = |edge: &Edge| weights.get(&(edge.to, edge.from)) == Some(&edge.weight);
-        graph.iter().filter(among).find(|edge| !returned(edge))
+        let returned = move |edge: &&Edge| weights.get(&(edge.to, edge.from)) == Some(&edge.weight);
+        graph.iter().filter(among).filter(move |edge| !returned(edge))
     });
-    let evidence = one_way.map_or(GraphEvidence::Mutual, |edge| GraphEvidence::OneWay {
-        from: Named::of(setup, edge.from),
-        to: Named::of(setup, edge.to),
-    });
+    let edges: BTreeSet<(usize, usize)> = one_way.map(|edge| (edge.from, edge.to)).collect();
+    let named = |(from, to)| [Named::of(setup, from), Named::of(setup, to)];
+    let evidence = if edges.is_empty() {
+        GraphEvidence::Mutual
+    } else {
+        GraphEvidence::OneWay { edges: edges.into_iter().map(named).collect() }
+    };
     Hypothesis::new(Id::MutualWeights, evidence)
 }

@@ -6,7 +6,7 @@
 
 use forwardstep_core::expression::Interval;
 use forwardstep_sim::Setup;
-use forwardstep_sim::delay::{Basis, Delay, Unknown};
+use forwardstep_sim::delay::{Basis, Delay, Known, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 
@@ -16,6 +16,23 @@ use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
 /// The delays of links that are used.
 fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
     setup.network.used_delays().filter_map(|index| setup.network.delays.get(index))
+}
+
+/// The same with what is known of them. A formula counts until its links are gone for good.
+fn known_each(setup: &Setup) -> impl Iterator<Item = Known> {
+    let known = |index: usize| {
+        let delay = setup.network.delays.get(index)?;
+        let (known, gone_s) = (delay.known(), setup.network.schedule.gone_s(|edge| edge.delay == index));
+        let bounded = delay.downcast().zip(gone_s).map(|(formula, gone_s)| until(formula, gone_s));
+        let whole = bounded.filter(|within| within.low >= 0.0 && within.high.is_finite());
+        Some(whole.map_or(known, |within| Known { bound_s: within.high, unknown: None, ..known }))
+    };
+    setup.network.used_delays().filter_map(known)
+}
+
+/// What a formula keeps within up to a time: there it is uniformly continuous.
+fn until(formula: &BoundedFormula, end_s: f64) -> Interval {
+    formula.formula().bounds(0.0, end_s)
 }
 
 /// The delays that can be refuted by what they do in the end.
@@ -45,7 +62,7 @@ fn known_delays(setup: &Setup) -> LinkEvidence {
     let (mut bound_s, mut oldest_s): (f64, f64) = (0.0, 0.0);
     let mut unknown: Vec<Unknown> = Vec::new();
     let (mut basis, mut holds_packets) = (Basis::Rule, false);
-    for known in delays(setup).map(|delay| delay.known()) {
+    for known in known_each(setup) {
         bound_s = bound_s.max(known.bound_s);
         if known.holds_packets && known.unknown.is_some() {
             oldest_s = oldest_s.max(known.bound_s);
@@ -71,7 +88,7 @@ fn weaker(a: Basis, b: Basis) -> Basis {
 pub(crate) fn messages_in_time(setup: &Setup) -> Option<Hypothesis> {
     let control = setup.control.as_ref()?;
     let timeout_s = control.failures.message_timeout_s?;
-    let known: Vec<_> = delays(setup).map(Delay::known).collect();
+    let known: Vec<_> = known_each(setup).collect();
     let bounded = known.iter().all(|known| known.unknown.is_none());
     // Heard at samples, a message is up to a period older than its delay.
     let bound_s = known.iter().map(|known| known.bound_s).fold(0.0, f64::max) + 1.0 / control.sample_hz;
@@ -131,12 +148,17 @@ fn hull(setup: &Setup, of: impl Fn(&BoundedFormula) -> Interval) -> Option<Inter
 
 /// Nothing to say where weights are constant.
 pub(crate) fn bounded_weights(setup: &Setup) -> Option<Hypothesis> {
-    let (on_run, for_ever) = (hull(setup, BoundedFormula::within)?, hull(setup, |one| one.for_ever().within)?);
+    let on_run = hull(setup, BoundedFormula::within)?;
     if let Some(evidence) = lasting_weights(setup).find_map(refuted_weight) {
         return Some(Hypothesis::new(Id::BoundedWeights, evidence));
     }
+    let known = numbered_weights(setup).map(|(index, weight)| {
+        let gone_s = setup.network.schedule.gone_s(|edge| edge.weight == Weight::Formula(index));
+        let for_ever = || (weight.for_ever().within, weight.for_ever().uniform);
+        gone_s.map_or_else(for_ever, |gone_s| (until(weight, gone_s), true))
+    });
+    let (for_ever, uniform) = known.reduce(|(a, both), (b, uniform)| (a.hull(b), both && uniform))?;
     let bounded_for_ever = for_ever.low > 0.0 && for_ever.high.is_finite();
-    let uniform = varying_weights(setup).all(|weight| weight.for_ever().uniform);
     let (Interval { low, high }, until_s) =
         if bounded_for_ever && uniform { (for_ever, None) } else { (on_run, Some(setup.time.end_s)) };
     Some(Hypothesis::new(Id::BoundedWeights, LinkEvidence::Weights { low, high, until_s, bounded_for_ever }))

@@ -1,6 +1,7 @@
 //! Verdicts about links: packets, random holds, formulas.
 
 use crate::common::{edge, masses};
+use crate::verdicts::control;
 use forwardstep_check::hypothesis::{LinkEvidence, WeightFault};
 use forwardstep_check::{Answer, Evidence, Id, NoPrediction, NotFixed, check, predict};
 use forwardstep_core::expression::Expression;
@@ -8,7 +9,7 @@ use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
-use forwardstep_sim::schedule::Schedule;
+use forwardstep_sim::schedule::{Phase, Schedule};
 
 /// The answer to the hypothesis on delays, and on weights if there is one, of two agents that hear each other.
 fn links(delay: Delay, weight: Option<Expression>) -> (Answer, String, Option<(Answer, String)>) {
@@ -51,6 +52,38 @@ fn a_weight_that_grows_is_told_with_a_time_after_the_run() {
         panic!("{:?}", found.evidence)
     };
     assert!(witness.t_s > 41.0 && witness.value > 42.0, "{witness:?}");
+}
+
+/// Beyond every bound in the end, or down to zero, but gone by then; where it comes back it is not.
+#[test]
+fn a_formula_counts_until_its_edge_is_gone_for_good() {
+    let t = || Expression::variable(0);
+    let [lasts_s, end_s] = [30.0, 20.0];
+    let found = |delay: Expression, weight: Expression, schedule: fn(Vec<Phase>) -> Schedule| {
+        let delays = vec![Delay::constant(0.1), Delay::new(BoundedFormula::new(delay, end_s))];
+        let first = vec![Edge { weight: Weight::Formula(0), ..edge(0, 1, 1.0, 1) }];
+        let phase = |edges| Phase { edges, dwell_s: lasts_s };
+        let mut setup =
+            masses(Exchange::Position, 2, schedule(vec![phase(first), phase(vec![edge(0, 1, 1.0, 0)])]), delays);
+        setup.time.end_s = end_s;
+        setup.network.weights = vec![BoundedFormula::new(weight, end_s)];
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.message_timeout_s = Some(31.0);
+        let hypotheses = check(&setup).hypotheses;
+        [Id::BoundedDelays, Id::BoundedWeights, Id::MessagesInTime].map(|id| {
+            let found = hypotheses.iter().find(|hypothesis| hypothesis.id == id).unwrap();
+            (found.answer(), found.because())
+        })
+    };
+    let [delays, weights, ages] = found(t(), (-t()).exp_of(), Schedule::once);
+    assert_eq!(delays, (Answer::Holds, "no delay exceeds 30 s".into()));
+    assert_eq!(weights, (Answer::Holds, "weights that follow a formula stay from 9.357e-14 to 1".into()));
+    assert_eq!(ages.0, Answer::Holds, "{}", ages.1);
+    let [delays, weights, ages] = found(t(), (-t()).exp_of(), Schedule::periodic);
+    assert_eq!([delays.0, weights.0, ages.0], [Answer::NotShown, Answer::Violated, Answer::NotShown]);
+    // Negative, or zero, after the run and before it is gone.
+    let [delays, weights, _] = found(-t() + 25.0, -t() + 25.0, Schedule::once);
+    assert_eq!([delays.0, weights.0], [Answer::NotShown; 2]);
 }
 
 #[test]

@@ -166,7 +166,7 @@ fn prop_a_swarm_needs_the_coupling_that_its_derivation_asks_for() {
     assert_eq!(answer(&complex, About::Coupling), Answer::NotShown);
 }
 
-fn control(computation_delay_s: f64) -> Option<Control> {
+pub(crate) fn control(computation_delay_s: f64) -> Option<Control> {
     Some(Control {
         sample_hz: 10.0,
         computation_delay_s,

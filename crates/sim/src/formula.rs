@@ -57,10 +57,11 @@ impl BoundedFormula {
         times_s(end_s).find_map(|t_s| Witness::outside(t_s, self.formula.enclose(Interval::point(t_s)), range))
     }
 
-    /// Its value, where it is shown to have one for ever, though t may be in it: 1 + 0 t. That of a formula without t may be no
-    /// number.
+    /// Its value, where one pass of interval arithmetic shows that it has one for ever, though t may be in it: 1 + 0 t. That of a
+    /// formula without t may be no number.
     pub fn constant(&self) -> Option<f64> {
-        let Interval { low, high } = self.for_ever.within;
+        // No more than that: others have to see it, too.
+        let Interval { low, high } = self.formula.enclose(Interval { low: 0.0, high: f64::INFINITY });
         if self.formula.is_constant() {
             // As a number: its bounds may be wider.
             return Some(self.formula.constant().map_or(f64::NAN, |number| number.value()));

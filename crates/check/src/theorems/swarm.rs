@@ -19,6 +19,8 @@ pub(super) fn hypotheses(setup: &Setup, following: &Following, coupling: f64) ->
 
 /// What bounds on rounding are widened by, relatively; far more than the few roundings on the way.
 const WIDER: f64 = 1e-12;
+/// How often a coupling that is too small is doubled to find one that is not.
+const DOUBLINGS: usize = 20;
 
 /// k λ against what the derivation asks for: L − λ* is positive definite exactly if λ > λ*.
 fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvidence {
@@ -36,10 +38,30 @@ fn coupled(setup: &Setup, following: &Following, coupling: f64) -> FollowingEvid
         let Some(weight) = weight else { return FollowingEvidence::WeightVaries };
         weights.push((to, from, weight));
     }
-    let shift = least / coupling * (1.0 + WIDER);
-    let shown =
-        ShiftedLaplacian::new(followers.len(), &weights, shift).is_some_and(|matrix| matrix.is_shown_definite());
-    if shown { FollowingEvidence::CouplingExceeds { least } } else { FollowingEvidence::CouplingNotShown { least } }
+    let exceeds = |coupling: f64| {
+        let shift = least / coupling * (1.0 + WIDER);
+        ShiftedLaplacian::new(followers.len(), &weights, shift).is_some_and(|matrix| matrix.is_shown_definite())
+    };
+    match exceeds(coupling) {
+        true => FollowingEvidence::CouplingExceeds { least },
+        false => FollowingEvidence::CouplingNotShown { least, enough: enough(coupling, exceeds) },
+    }
+}
+
+/// A coupling that exceeds what it must, within a per cent of the least such, above one that does not.
+fn enough(coupling: f64, exceeds: impl Fn(f64) -> bool) -> Option<f64> {
+    let doubled = std::iter::successors(Some(2.0 * coupling), |coupling| Some(2.0 * coupling));
+    let mut high = doubled.take(DOUBLINGS).find(|coupling| exceeds(*coupling))?;
+    let mut low = 0.5 * high;
+    while high > 1.01 * low {
+        let middle = 0.5 * (low + high);
+        if exceeds(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    Some(high)
 }
 
 /// What k λ must exceed; `None` where p² + β p + α has no real roots.

@@ -45,7 +45,9 @@ impl DelayFunction for BoundedFormula {
         } else {
             None
         };
-        let unknown = if !(for_ever.within.low >= 0.0 && for_ever.within.high.is_finite()) {
+        let unknown = if for_ever.within.is_finite() && for_ever.within.low < 0.0 && for_ever.uniform {
+            Some(Unknown::FormulaSign)
+        } else if !(for_ever.within.low >= 0.0 && for_ever.within.high.is_finite()) {
             Some(if self.is_steep(on_run.high) { Unknown::FormulaSteep } else { Unknown::FormulaBound })
         } else if !for_ever.uniform {
             Some(Unknown::FormulaContinuity)

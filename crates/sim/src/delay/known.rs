@@ -29,6 +29,8 @@ pub struct Known {
 /// What is not known of a delay beyond the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
+    /// Interval arithmetic bounds a formula for all time, but does not tell that it stays above zero.
+    FormulaSign,
     /// Interval arithmetic found no bound of a formula for all time.
     FormulaBound,
     /// The same, and no end of it is shown to be uniformly continuous.

@@ -216,6 +216,13 @@ impl Schedule {
         }
     }
 
+    /// From when on the last graph stays, s, if it has no edge of this kind: what such edges do later does not count.
+    pub fn gone_s(&self, is_it: impl Fn(&Edge) -> bool) -> Option<f64> {
+        let ends = self.known.extent == Extent::Whole;
+        let stays = || self.recurring_graphs().iter().flatten().any(is_it);
+        if ends && !stays() { self.segments().last().map(|last| last.start_s) } else { None }
+    }
+
     /// The stretches of time in order, from t = 0; endless unless the last graph stays for ever.
     pub fn segments(&self) -> Segments<'_> {
         self.signal.segments(self.graphs.len())

@@ -77,6 +77,8 @@ pub enum FollowingEvidence {
     CouplingNotShown {
         /// The bound.
         least: f64,
+        /// A k that is enough; none where no k is, over this graph.
+        enough: Option<f64>,
     },
     /// p² + β p + α has no real roots.
     ComplexRoots,

@@ -128,10 +128,8 @@ pub enum GraphEvidence {
     Mutual,
     /// An edge that does not.
     OneWay {
-        /// Who is heard.
-        from: Named,
-        /// Who hears.
-        to: Named,
+        /// Who is heard, and who hears; at least one such pair.
+        edges: Vec<[Named; 2]>,
     },
 }
 

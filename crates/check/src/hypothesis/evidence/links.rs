@@ -96,7 +96,11 @@ pub enum WeightFault {
 /// Whether more can be known of a delay than the run shows.
 fn beyond_the_run(unknown: Unknown) -> bool {
     match unknown {
-        Unknown::FormulaBound | Unknown::FormulaSteep | Unknown::FormulaContinuity | Unknown::NothingArrived => true,
+        Unknown::FormulaSign
+        | Unknown::FormulaBound
+        | Unknown::FormulaSteep
+        | Unknown::FormulaContinuity
+        | Unknown::NothingArrived => true,
         Unknown::PacketsInARow | Unknown::LaterPackets | Unknown::LaterHolds => false,
     }
 }

@@ -58,10 +58,9 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
             "Remark 11 names it; what it needs was derived for this software and follows".into()
         }
         FollowingEvidence::CouplingExceeds { least } => format!("k λ exceeds {}", rounded_up(*least)),
-        FollowingEvidence::CouplingNotShown { least } => format!(
-            "k λ could not be shown to exceed {}: a larger coupling or larger weights would",
-            rounded_up(*least)
-        ),
+        FollowingEvidence::CouplingNotShown { least, .. } => {
+            format!("k λ could not be shown to exceed {}", rounded_up(*least))
+        }
         FollowingEvidence::ComplexRoots => "p² + β p + α has no real roots".into(),
         FollowingEvidence::GraphSwitches => "the graph switches".into(),
         FollowingEvidence::WeightVaries => "a weight varies with time".into(),

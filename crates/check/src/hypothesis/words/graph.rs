@@ -97,8 +97,14 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
         }
         GraphEvidence::SwitchesUnderLeader { design } => switches_under_leader(*design).into(),
         GraphEvidence::Mutual => "every edge among them leads both ways".into(),
-        GraphEvidence::OneWay { from, to } => {
-            format!("{} hears {}, but not the other way round with the same weight", to.name, from.name)
+        GraphEvidence::OneWay { edges } => {
+            let first = edges.first().map_or(String::new(), |[from, to]| format!("{} hears {}", to.name, from.name));
+            let more = match edges.len().saturating_sub(1) {
+                0 => String::new(),
+                1 => ", and so for one more edge".into(),
+                more => format!(", and so for {more} more edges"),
+            };
+            format!("{first}, but not the other way round with the same weight{more}")
         }
     }
 }

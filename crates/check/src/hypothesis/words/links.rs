@@ -94,6 +94,7 @@ fn refuted_weight(fault: WeightFault, witness: Option<Witness>) -> String {
 
 fn reason(unknown: Unknown) -> &'static str {
     match unknown {
+        Unknown::FormulaSign => "a formula could not be shown not to become negative after the run",
         Unknown::FormulaBound | Unknown::FormulaSteep => "a formula could not be shown to be bounded for ever",
         Unknown::FormulaContinuity => SWINGS,
         Unknown::PacketsInARow => {

@@ -78,8 +78,14 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
             }
             FollowingDesign::Swarm { .. } => "one graph".into(),
         },
-        GraphEvidence::OneWay { from, to } => {
-            format!("an edge from {} to {} with the weight of the one that leads back", to.name, from.name)
+        GraphEvidence::OneWay { edges } => {
+            let named = edges.iter().take(NAMES).map(|[from, to]| format!("from {} to {}", to.name, from.name));
+            let named = named.collect::<Vec<_>>().join(", ");
+            match edges.len() {
+                1 => format!("an edge {named} with the weight of the one that leads back"),
+                2..=NAMES => format!("edges {named}, each with the weight of the one that leads back"),
+                all => format!("edges {named}, and {} more, each with the weight of the one that leads back", all - NAMES),
+            }
         }
         GraphEvidence::LoggedPhases { .. } => "phases that repeat, or end with one that stays".into(),
         GraphEvidence::EveryGraph { .. }
@@ -154,6 +160,7 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
 
 fn known(reason: Unknown, bound_s: f64) -> String {
     match reason {
+        Unknown::FormulaSign => "max(T, 0) in the place of the formula T".into(),
         Unknown::FormulaBound => format!("an end of the formula T, such as min(T, {})", bound(bound_s)),
         Unknown::FormulaSteep | Unknown::FormulaContinuity => STEADY.into(),
         Unknown::PacketsInARow => "`most_consecutive` losses in a row".into(),
@@ -227,8 +234,12 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
             Choice::Explicit | Choice::Layer { .. } => "`sign = \"implicit\"`".into(),
         },
         FollowingEvidence::NotPrinted => "one of the designs that the paper prints".into(),
-        FollowingEvidence::CouplingNotShown { least } => {
-            format!("a larger `coupling` k, so that k λ exceeds {}", rounded_up(*least))
+        FollowingEvidence::CouplingNotShown { enough: Some(enough), .. } => {
+            format!("a `coupling` of at least {}", rounded_up(*enough))
+        }
+        FollowingEvidence::CouplingNotShown { enough: None, .. } => {
+            "edges among agents that lead both ways with the same weight, and a leader that reaches everybody over them"
+                .into()
         }
         FollowingEvidence::ComplexRoots => "two real roots".into(),
         FollowingEvidence::GraphSwitches => "one graph".into(),

@@ -86,7 +86,13 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         KindEvidence::FactorBelowFloor { agent, value, .. } => {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
-        KindEvidence::FactorAtStart { agent, .. } => format!("a start of {} at which ψ is larger", agent.name),
+        KindEvidence::FactorAtStart { agent, value, floor } => {
+            let start = format!("a start of {} at which |ψ| exceeds {}", agent.name, rounded_up(*floor));
+            match value.abs() {
+                0.0 => start,
+                size => format!("`floor` below {} for {}, or {start}", rounded_down(size), agent.name),
+            }
+        }
         KindEvidence::Unmoved { agent, equation } => {
             format!("a term of x{} in equation {} of {}, such as x{0} itself", equation + 2, equation + 1, agent.name)
         }
