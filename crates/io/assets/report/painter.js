@@ -243,10 +243,10 @@ const drawMarks = (ctx, see, frame, colours, hovered) => {
 };
 
 const WORDS = '12px ui-sans-serif, system-ui, "Segoe UI", Roboto, "Noto Sans", sans-serif';
-// Names beside what they name, none over another; of many agents only those that are pointed at, chosen, or lead. Returns how many have no room.
+// Names beside what they name, none over another or over what is kept free; of many agents only those that are pointed at, chosen, or lead. Returns how many have no room.
 const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
   if (charted) return drawChartWords(ctx, see, frame, colours, { hovered, alone });
-  const taken = [];
+  const taken = [...(see.kept ?? [])];
   const write = (text, x, y, fill, must) => {
     const wide = ctx.measureText(text).width;
     const left = Math.min(Math.max(2, x - 0.5 * wide), Math.max(2, see.width - wide - 2));

@@ -66,6 +66,12 @@ const stage = (() => {
     heardWords.style.minHeight = `${Math.max(parseFloat(heardWords.style.minHeight) || 0, heardWords.getBoundingClientRect().height)}px`;
   };
   addEventListener("resize", () => (heardWords.style.minHeight = ""));
+  // The corner in which the scale stands.
+  const corner = { wide: 0, high: 0 };
+  new ResizeObserver(() => {
+    Object.assign(corner, { wide: view.clientWidth - tip.offsetLeft, high: view.clientHeight - tip.offsetTop });
+    ask();
+  }).observe(tip);
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -76,6 +82,7 @@ const stage = (() => {
     ctx.clearRect(0, 0, width, height);
     const frame = frameAt(now.t, hidden);
     const see = looking(width, height, frame.nodes);
+    see.kept = [[width - corner.wide, height - corner.high, width, height]];
     // What passes in less than six frames only flickers.
     const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
     const unnamed = paint(ctx, see, frame, heard, now.flat);

@@ -29,9 +29,9 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
                         @for group in groups(setup) {
                             tr {
                                 th { (names(&group.agents)) }
-                                td { (setup.measures_for(group.measures).join(", ")) }
-                                td { @if transmits.is_empty() { "nothing" } @else { (transmits.join(", ")) } }
-                                td { (traffic(setup, transmits.len() * group.axes)) }
+                                td data-what="Measured" { (setup.measures_for(group.measures).join(", ")) }
+                                td data-what="Transmitted" { @if transmits.is_empty() { "nothing" } @else { (transmits.join(", ")) } }
+                                td data-what="On one edge" { (traffic(setup, transmits.len() * group.axes)) }
                             }
                         }
                     }

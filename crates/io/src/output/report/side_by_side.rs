@@ -182,7 +182,8 @@ fn table(comparison: &Comparison) -> Markup {
                     @for group in RowGroup::ALL {
                         tbody {
                             tr.group { th scope="rowgroup" colspan=(runs + 1) { (group.words()) } }
-                            @for row in comparison.rows.iter().filter(|row| row.group == group) { (line(row, runs)) }
+                            @let rows: Vec<_> = comparison.rows.iter().filter(|row| row.group == group).collect();
+                            @for (k, row) in rows.iter().enumerate() { (line(row, k.checked_sub(1).map(|k| rows[k]), runs)) }
                         }
                     }
                 }
@@ -191,7 +192,11 @@ fn table(comparison: &Comparison) -> Markup {
     }
 }
 
-fn line(row: &ComparedRow, runs: usize) -> Markup {
+/// A row below another of its group, whose reasons are not said twice.
+fn line(row: &ComparedRow, above: Option<&ComparedRow>, runs: usize) -> Markup {
+    let is_repeated = |k: usize, because: &Option<String>| {
+        above.and_then(|above| above.cells.get(k)).is_some_and(|cell| cell.because == *because)
+    };
     html! {
         tr.differs[!row.same] data-row=(row.key) {
             th scope="row" {
@@ -199,11 +204,13 @@ fn line(row: &ComparedRow, runs: usize) -> Markup {
                 (prose(&row.name))
                 @if let Some(note) = &row.note { small { (prose(note)) } }
             }
-            @for cell in row.cells.iter().take(if row.same { 1 } else { runs }) {
+            @for (k, cell) in row.cells.iter().enumerate().take(if row.same { 1 } else { runs }) {
                 td colspan=[row.same.then_some(runs)] {
                     (prose(&cell.words))
-                    @if let Some(because) = &cell.because { small { (prose(because)) } }
                     @if row.same && runs > 1 { span.by { "the same in all" } }
+                    @if let Some(because) = &cell.because {
+                        small { @if is_repeated(k, &cell.because) { "as above" } @else { (prose(because)) } }
+                    }
                 }
             }
         }
