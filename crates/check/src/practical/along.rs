@@ -155,7 +155,7 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         let state = |&row: &usize| {
             let signal = |signal| columns.at(agent, signal, axes, row);
             let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
-            Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz? })
+            Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz?, has_sign: true })
         };
         let way: Vec<Led> = looked.iter().filter_map(state).collect();
         let way: Vec<&Led> = way.iter().collect();

@@ -8,7 +8,7 @@ use forwardstep_sim::trajectory::Trajectory;
 
 use super::along::Columns;
 use crate::kinds::is_lagrangian;
-use crate::prediction::reference_alone;
+use crate::prediction::{reference_alone, reference_behind};
 
 /// States that are looked at in all, and of one agent.
 const MOST: usize = 1024;
@@ -17,7 +17,7 @@ const MOST_OF_ONE: usize = 200;
 /// Work for the reference dynamics, in nanoseconds, roughly: what they reach with it is looked at.
 const WORK: f64 = 2e8;
 
-/// A state: q, z = q̇ and ż.
+/// A state: q, z = q̇ and ż, which in a motion that is followed lacks what the sign adds.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Led {
     pub(super) agent: usize,
@@ -25,6 +25,8 @@ pub(super) struct Led {
     pub(super) q: Vec<f64>,
     pub(super) dq: Vec<f64>,
     pub(super) dz: Vec<f64>,
+    /// Whether the sign of a reference that follows a leader is in ż.
+    pub(super) has_sign: bool,
 }
 
 /// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
@@ -40,23 +42,31 @@ fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
         return Vec::new();
     }
     let leader = setup.following().and_then(|following| Some(&following.motion()?.trajectory));
-    let shared = agents.iter().any(|agent| !setup.tracks(*agent)) && leader.is_none();
-    let alone = if shared { reference_alone(setup, WORK) } else { None };
+    let alone = if agents.iter().all(|agent| setup.tracks(*agent)) {
+        None
+    } else if setup.following().is_some() {
+        reference_behind(setup, WORK)
+    } else {
+        reference_alone(setup, WORK)
+    };
     let columns = alone.as_ref().map(|recording| (Columns::of(recording), &recording.t_s));
+    let end_s = setup.time.end_s;
     let mut found = Vec::new();
     for &agent in agents {
         let own = &setup.agents[agent];
-        let motion = if setup.tracks(agent) { own.target.as_ref() } else { leader };
-        match motion {
-            Some(motion) if motion.axes() == own.robot.axes.len() => {
-                found.extend(along(motion, agent, setup.time.end_s, each));
-            }
-            Some(_) => {}
-            None => {
-                let axes = own.robot.axes.len();
-                found.extend(columns.iter().flat_map(|(columns, t_s)| recorded(columns, t_s, agent, axes, each)));
-            }
-        }
+        let axes = own.robot.axes.len();
+        let (motion, columns) = match setup.tracks(agent) {
+            true => (own.target.as_ref(), None),
+            false => (leader, columns.as_ref()),
+        };
+        let rows = if columns.is_some() && motion.is_some() { (each / 2).max(2) } else { each };
+        found.extend(columns.iter().flat_map(|(columns, t_s)| recorded(columns, t_s, agent, axes, rows)));
+        // Who follows a leader is with it where work did not lead.
+        let reached_s = found.last().filter(|led| led.agent == agent).map_or(f64::NEG_INFINITY, |led| led.t_s);
+        let motion = motion.filter(|motion| motion.axes() == axes);
+        found.extend(
+            motion.iter().flat_map(|motion| along(motion, agent, end_s, rows)).filter(|led| led.t_s > reached_s),
+        );
     }
     found
 }
@@ -68,7 +78,7 @@ fn along(motion: &Trajectory, agent: usize, end_s: f64, each: usize) -> impl Ite
         let t_s = end_s * step as f64 / (each - 1) as f64;
         motion.jets(t_s, &mut jets);
         let derivative = |r: usize| jets.iter().map(|jet| jet[r]).collect();
-        Led { agent, t_s, q: derivative(0), dq: derivative(1), dz: derivative(2) }
+        Led { agent, t_s, q: derivative(0), dq: derivative(1), dz: derivative(2), has_sign: false }
     })
 }
 
@@ -79,7 +89,7 @@ fn recorded(columns: &Columns<'_>, t_s: &[f64], agent: usize, axes: usize, each:
     let state = |row: usize| {
         let signal = |signal| columns.at(agent, signal, axes, row);
         let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
-        Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz? })
+        Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz?, has_sign: true })
     };
     rows.into_iter().filter_map(state).collect()
 }

@@ -12,7 +12,7 @@ use crate::practical::{Gains, start_energy_j};
 use crate::surroundings::acts;
 
 use super::cascade::{CascadeSpread, NoCascade};
-use super::ideal::{NoIdeal, ideal, start_error, told_before};
+use super::ideal::{NoIdeal, behind_leader, ideal, start_error, told_before};
 use super::settled::{Settled, settled};
 use super::torque::{PeakTorque, peak_torques, relative_error};
 use super::unfinished::{Unfinished, completed, simulated};
@@ -188,6 +188,12 @@ pub(crate) fn reference_alone(setup: &Setup, mut work: f64) -> Option<Recording>
     let ideal = ideal(setup).ok()?;
     let before = told_before(setup, &ideal);
     Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
+}
+
+/// The same where a leader is followed.
+pub(crate) fn reference_behind(setup: &Setup, mut work: f64) -> Option<Recording> {
+    let behind = behind_leader(setup)?;
+    Some(simulated(&behind, None, &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
 }
 
 /// The positions of all agents on an axis.

@@ -98,6 +98,23 @@ pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
     })
 }
 
+/// `setup` with every agent that follows a leader, and a leader that is an agent, replaced by a point mass of 1 kg under (6) that starts where it
+/// starts, in continuous time; `None` where a law is none of (6)–(7). With z(0) = q̇(0) it follows its reference exactly, as in [`ideal`].
+pub(crate) fn behind_leader(setup: &Setup) -> Option<Setup> {
+    setup.following()?;
+    let mass = |(agent, own): (usize, &AgentSetup)| {
+        let start = Start { rest: Vec::new(), ..own.start.clone() };
+        is_lagrangian(own)
+            .then(|| AgentSetup { target: own.target.clone().filter(|_| setup.tracks(agent)), ..unit_mass(own, start) })
+    };
+    Some(Setup {
+        agents: setup.agents.iter().enumerate().map(mass).collect::<Option<_>>()?,
+        solver: Solver { balance: false, ..setup.solver },
+        control: None,
+        ..setup.clone()
+    })
+}
+
 /// What the agents of `setup` sent before t = 0, positions and velocities as they are measured, where that is not what those of [`ideal`]
 /// send at the start.
 pub fn told_before(setup: &Setup, ideal: &Setup) -> Option<Vec<Vec<f64>>> {
@@ -118,13 +135,18 @@ pub fn told_before(setup: &Setup, ideal: &Setup) -> Option<Vec<Vec<f64>>> {
 const DAMPING_PER_S: f64 = 1.0;
 
 fn follower(agent: usize, own: &AgentSetup, integral: bool) -> Result<AgentSetup, NoIdeal> {
+    Ok(unit_mass(own, start(agent, own, integral)?))
+}
+
+/// A point mass of 1 kg, which is known, in the place of a robot.
+fn unit_mass(own: &AgentSetup, start: Start) -> AgentSetup {
     let axes = own.robot.axes.iter().map(|axis| Axis {
         position_limits: None,
         velocity_limit: None,
         effort_limit: None,
         ..axis.clone()
     });
-    Ok(AgentSetup {
+    AgentSetup {
         robot: RobotSetup {
             kind: Arc::new(PointMass { dimension: own.robot.axes.len() }),
             theta: vec![1.0],
@@ -134,12 +156,12 @@ fn follower(agent: usize, own: &AgentSetup, integral: bool) -> Result<AgentSetup
         manipulability: 0.0,
         law: Arc::new(Known { damping: Gain::Number(DAMPING_PER_S) }),
         target: None,
-        start: start(agent, own, integral)?,
+        start,
         enforce_limits: false,
         pushes: Vec::new(),
         name: own.name.clone(),
         roots_per_s: own.roots_per_s.clone(),
-    })
+    }
 }
 
 /// q, q̇ = z, ż, … at the start.
