@@ -120,7 +120,7 @@ pub enum NoPrediction {
         agent: usize,
     },
     /// Nothing keeps apart what pushes it and what it agrees on, and the impulse is not known.
-    #[error("agent number {} has no reference beside itself, so that what is agreed on moves by an impulse that only the run knows", agent + 1)]
+    #[error("agent number {} is its own reference, so that what is agreed on moves by an amount that is known only after the run", agent + 1)]
     Pushed {
         /// Index of the agent.
         agent: usize,

@@ -301,12 +301,18 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
     let (answer, because) = verdict(vec![forever(Effect::Torque(constant(&[1.0; 2])))]).unwrap();
     assert!(answer == Answer::NotCovered && because.contains("K s = tau_ext"), "{because}");
     let (answer, because) = verdict(vec![forever(hand(constant(&[0.1])))]).unwrap();
-    assert!(answer == Answer::NotCovered && because.starts_with("a hand never lets go of agent-2"), "{because}");
+    assert!(
+        answer == Answer::NotCovered && because.starts_with("a virtual spring never lets go of agent-2"),
+        "{because}"
+    );
     // Of what is no robot under (6)-(7) neither.
     let mut blind = alone(blind_mass(1.0, 1.0));
     blind.agents[0].pushes = vec![forever(hand(constant(&[0.1])))];
     let (answer, because) = said(&blind, Id::PushesEnd).unwrap();
-    assert!(answer == Answer::NotCovered && because.starts_with("a hand never lets go of agent"), "{because}");
+    assert!(
+        answer == Answer::NotCovered && because.starts_with("a virtual spring never lets go of agent"),
+        "{because}"
+    );
     // A hand that stands at zero holds on to what it has.
     assert_eq!(verdict(vec![forever(hand(constant(&[0.0])))]).unwrap().0, Answer::NotCovered);
     // A torque that comes to zero after minutes has ended by then.

@@ -257,17 +257,17 @@ fn regress_what_leaves_a_reach_by_little_is_said_with_the_digits_that_tell() {
         (found.because(), found.change().unwrap_or_default())
     };
     let (because, change) = said(1.800_03);
-    assert_eq!(because, "at t = 0 s it is 1.80003 m away, and the tip cannot be farther than 1.8 m");
+    assert_eq!(because, "at t = 0 s it is 1.80003 m away, and the end-effector cannot be farther than 1.8 m");
     assert_eq!(change, "a target that keeps closer than 1.8 m at all times");
     let (because, _) = said(0.199_98);
     assert_eq!(
         because,
-        "at t = 0 s it is 0.19998 m away, and the tip cannot be closer than 0.2 m without a singular Jacobian"
+        "at t = 0 s it is 0.19998 m away, and the end-effector cannot be closer than 0.2 m without a singular Jacobian"
     );
     let (because, change) = said(1.8);
     assert_eq!(
         because,
-        "it comes to 1.8 m, up to rounding the edge of what the tip can reach, where its Jacobian is singular"
+        "it comes to 1.8 m, up to rounding the edge of what the end-effector can reach, where its Jacobian is singular"
     );
     assert_eq!(change, "a target that keeps clearly closer than 1.8 m");
 }

@@ -1,8 +1,8 @@
 //! Estimates that are kept within bounds: V changes as each proof says, on either side of every bound, and what is used keeps to them.
 
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, Asked, BacksteppingGains, Balance, ChainError, Controller, Following, Given, Guide,
-    Immersion, Jets, Linearising, PositionOnly, Thrust, ThrustDesign, Truth,
+    AdaptiveBackstepping, BacksteppingGains, Balance, ChainError, Controller, ControllerInput, ControllerOutput,
+    Following, Immersion, Jets, Linearising, PositionOnly, ReferenceModel, Thrust, ThrustDesign, Truth,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::{ParameterBounds, Range};
@@ -38,7 +38,7 @@ fn at<C: Controller<Exchange = Position>>(law: &C, plant: &C::Plant, m: usize, x
     let (degree, sums) = (vec![0.8; 1], vec![0.5; m]);
     let mut output = vec![0.0; plant.output_len()];
     output.copy_from_slice(&x[..plant.output_len()]);
-    let given = Given {
+    let given = ControllerInput {
         measured: law.see(&output).unwrap(),
         heard: Heard::new(&degree, &sums, m).unwrap(),
         target: Jets::NONE,
@@ -46,7 +46,7 @@ fn at<C: Controller<Exchange = Position>>(law: &C, plant: &C::Plant, m: usize, x
     let (mut input, mut d_law) = (vec![0.0; size(&plant.inputs())], vec![0.0; state.len()]);
     let (mut shown, mut d_plant) = (vec![0.0; size(&law.shown())], vec![0.0; x.len()]);
     let mut work = law.scratch();
-    let asked = Asked { input: &mut input, d_state: &mut d_law, shown: &mut shown };
+    let asked = ControllerOutput { input: &mut input, d_state: &mut d_law, shown: &mut shown };
     law.evaluate(&mut work, given, state, asked).unwrap();
     plant.rate(&mut plant.scratch(), x, &input, &[], &mut d_plant).unwrap();
     let truth = Truth { plant, state: x, external: &[] };
@@ -87,8 +87,8 @@ fn bounds() -> ParameterBounds {
     ParameterBounds::new(vec![0.1, -0.7], vec![0.6, 0.2], 0.05)
 }
 
-fn guide(roots: &[f64]) -> Guide {
-    Guide::Consensus(Consensus::new([(roots, 0.0)]).unwrap())
+fn guide(roots: &[f64]) -> ReferenceModel {
+    ReferenceModel::Consensus(Consensus::new([(roots, 0.0)]).unwrap())
 }
 
 fn second_order() -> Formulas {
@@ -168,8 +168,11 @@ fn eq_lyapunov_of_backstepping_keeps_its_rate_between_bounds_in_both_shapes() {
         }
         // It starts where it is asked to, and not at a bound.
         let x = numbers(1, n);
-        let given =
-            Given { measured: law.see(&x).unwrap(), heard: Heard::new(&[0.8], &[0.5], 1).unwrap(), target: Jets::NONE };
+        let given = ControllerInput {
+            measured: law.see(&x).unwrap(),
+            heard: Heard::new(&[0.8], &[0.5], 1).unwrap(),
+            target: Jets::NONE,
+        };
         let mut state = vec![0.0; n + 2];
         law.start(&mut law.scratch(), given, &[], &mut state).unwrap();
         let shown = at(&law, &plant, 1, &x, &state).shown;

@@ -2,8 +2,8 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, Asked, BacksteppingGains, ChainError, Controller, Following, Given, Guide, GuideError,
-    Immersion, Jet, Jets, Linearising, Trouble, Truth,
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Controller, ControllerInput, ControllerOutput, Following,
+    Immersion, Jet, Jets, Linearising, ReferenceModel, ReferenceModelError, Singularity, Truth,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{Cascade, CascadeError, CascadeTerms, Chain, Closures, Formulas, Plant, total};
@@ -26,17 +26,17 @@ fn numbers(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-fn consensus(roots: &[f64]) -> Guide {
-    Guide::Consensus(Consensus::<Position>::new([(roots, 0.0)]).unwrap())
+fn consensus(roots: &[f64]) -> ReferenceModel {
+    ReferenceModel::Consensus(Consensus::<Position>::new([(roots, 0.0)]).unwrap())
 }
 
-fn tracking(roots: &[f64]) -> Guide {
+fn tracking(roots: &[f64]) -> ReferenceModel {
     let mut alpha = polynomial(roots).unwrap();
     alpha.pop();
-    Guide::Tracking { alpha }
+    ReferenceModel::Tracking { alpha }
 }
 
-fn following(guide: Guide) -> Following {
+fn following(guide: ReferenceModel) -> Following {
     Following { guide, gain_per_s: 1.7, floor: 1e-3 }
 }
 
@@ -54,10 +54,10 @@ where
 {
     let mut scratch = law.scratch();
     let heard = Heard::new(&DEGREE, &SUMS, 1).unwrap();
-    let given = Given { measured: law.see(x).unwrap(), heard, target: target.into() };
+    let given = ControllerInput { measured: law.see(x).unwrap(), heard, target: target.into() };
     let (mut input, mut d_state) = (vec![0.0], vec![f64::NAN; state.len()]);
     let mut shown = vec![f64::NAN; total(&law.shown())];
-    let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+    let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
     law.evaluate(&mut scratch, given, state, asked).unwrap();
     let mut d_x = vec![0.0; x.len()];
     plant.rate(&mut plant.scratch(), x, &input, &[], &mut d_x).unwrap();
@@ -70,7 +70,7 @@ where
     C: Controller<Exchange = Position>,
 {
     let heard = Heard::new(&DEGREE, &SUMS, 1).unwrap();
-    let given = Given { measured: law.see(x).unwrap(), heard, target: Jets::NONE };
+    let given = ControllerInput { measured: law.see(x).unwrap(), heard, target: Jets::NONE };
     let balance =
         law.balance(&mut law.scratch(), Truth { plant, state: x, external: &[] }, given, state, shown).unwrap();
     [balance.value, balance.dissipation]
@@ -254,7 +254,7 @@ fn chains_start_where_the_reference_follows_them() {
     let law = AdaptiveBackstepping::new(&strict(), consensus(&[1.0, 2.0]), gains(3, 2), vec![0.3, 0.4]).unwrap();
     let x = [0.9, 0.1, 0.2];
     let heard = Heard::new(&DEGREE, &SUMS, 1).unwrap();
-    let given = Given { measured: law.see(&x).unwrap(), heard, target: Jets::NONE };
+    let given = ControllerInput { measured: law.see(&x).unwrap(), heard, target: Jets::NONE };
     let mut state = vec![f64::NAN; 5];
     law.start(&mut law.scratch(), given, &[], &mut state).unwrap();
     assert_eq!(state, [0.9, 0.0, 0.0, 0.3, 0.4]);
@@ -269,7 +269,7 @@ fn a_factor_that_vanishes_is_told() {
     let plant = Chain { terms, theta: Vec::new() };
     let shown = |at: f64| close(&law, &plant, &[at], &[0.1], &[[0.0; 5]]).shown;
     assert_eq!(law.trouble(&[0.1], &shown(0.5)), None);
-    let Some(Trouble::Vanishes { value, floor, .. }) = law.trouble(&[0.1], &shown(-5e-4)) else {
+    let Some(Singularity::Vanishes { value, floor, .. }) = law.trouble(&[0.1], &shown(-5e-4)) else {
         panic!("nothing told");
     };
     assert_eq!((value, floor), (-5e-4, 1e-3));
@@ -278,16 +278,16 @@ fn a_factor_that_vanishes_is_told() {
 #[test]
 fn what_does_not_fit_is_an_error_with_its_numbers() {
     let built = |guide, p| Linearising::adaptive(third_order(), following(guide), vec![1.0; p], vec![0.0; 3]);
-    let few = GuideError::TooFew { least: 2, got: 1 };
-    assert_eq!(built(consensus(&[1.0]), 3).unwrap_err(), ChainError::Guide(few));
-    let few = GuideError::TooFew { least: 3, got: 2 };
-    assert_eq!(built(tracking(&[1.0, 2.0]), 3).unwrap_err(), ChainError::Guide(few));
+    let few = ReferenceModelError::TooFew { least: 2, got: 1 };
+    assert_eq!(built(consensus(&[1.0]), 3).unwrap_err(), ChainError::ReferenceModel(few));
+    let few = ReferenceModelError::TooFew { least: 3, got: 2 };
+    assert_eq!(built(tracking(&[1.0, 2.0]), 3).unwrap_err(), ChainError::ReferenceModel(few));
     assert_eq!(built(tracking(&[1.0; 5]), 3).unwrap().target_derivatives(), 5);
     let length = LengthError { what: "adaptation gains", need: 3, got: 2 };
     assert_eq!(built(consensus(&[1.0, 2.0]), 2).unwrap_err(), ChainError::Length(length));
-    let few = GuideError::TooFew { least: 2, got: 1 };
+    let few = ReferenceModelError::TooFew { least: 2, got: 1 };
     let law = AdaptiveBackstepping::new(&strict(), consensus(&[1.0]), gains(3, 2), vec![0.0; 2]);
-    assert_eq!(law.unwrap_err(), ChainError::Guide(few));
+    assert_eq!(law.unwrap_err(), ChainError::ReferenceModel(few));
     let above = CascadeTerms::strict(vec![vec![x(1)], vec![x(0)]]).unwrap_err();
     assert_eq!(above, CascadeError::Above { equation: 1, used: 2, most: 1 });
     let empty = CascadeTerms::new(Vec::new(), Vec::new(), Expression::number(1.0)).unwrap_err();

@@ -4,9 +4,9 @@ use crate::common::looped::polynomial as moved;
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter, StepError};
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, Asked, AttitudeTracking, BacksteppingGains, ChainError, Controller, Floor,
-    Following as ChainFollowing, Given, Guide, Immersion, Jet, Jets, Linearising, PositionOnly, Stepped, TaskSpace,
-    Thrust, ThrustDesign, Trouble,
+    AdaptiveBackstepping, AttitudeTracking, BacksteppingGains, ChainError, Controller, ControllerInput,
+    ControllerOutput, Floor, Following as ChainFollowing, Immersion, Jet, Jets, Linearising, PositionOnly,
+    ReferenceModel, Singularity, Stepped, TaskSpace, Thrust, ThrustDesign,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::{ParameterBounds, SlotineLi};
@@ -108,7 +108,7 @@ fn blind() -> Stepped<PositionOnly> {
     alpha.pop();
     let law = PositionOnly {
         axes: 1,
-        guide: Guide::Tracking { alpha },
+        guide: ReferenceModel::Tracking { alpha },
         damping: 3.0,
         filter_per_s: 2.0,
         adaptation: 0.5,
@@ -145,7 +145,7 @@ fn eq_a9_one_long_step_is_many_short_ones_along_the_target() {
 #[test]
 fn eq_43_a_negative_factor_of_the_input_is_as_good_as_a_positive_one() {
     let plant = Formulas::new(2, &Expression::number(0.0), Vec::new(), &Expression::number(-2.0)).unwrap();
-    let guide = Guide::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
+    let guide = ReferenceModel::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
     let law = Linearising::new(plant, Vec::new(), ChainFollowing { guide, gain_per_s: 1.0, floor: 0.1 }).unwrap();
     let state = vec![0.0; total(&law.states())];
     let told = |psi: f64| {
@@ -164,7 +164,7 @@ fn immersion_notices_an_antiderivative_that_is_a_little_off() {
         let phi = vec![x.clone() * v.clone().power(2.0)];
         Formulas::new(2, &Expression::number(0.0), phi, &Expression::number(1.0)).unwrap()
     };
-    let guide = || Guide::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
+    let guide = || ReferenceModel::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
     let made = |factor: f64| {
         let following = ChainFollowing { guide: guide(), gain_per_s: 1.0, floor: 0.1 };
         let antiderivative = x.clone() * v.clone().power(3.0) * factor;
@@ -186,14 +186,14 @@ fn immersion_notices_an_antiderivative_that_is_a_little_off() {
     let law = made(1.0 / 3.0).unwrap();
     let mut state = vec![0.0; total(&law.states())];
     let output = [0.8, -1.4];
-    let given = || Given {
+    let given = || ControllerInput {
         measured: law.see(&output).unwrap(),
         heard: Heard::new(&[1.0], &[0.3], 1).unwrap(),
         target: Jets::NONE,
     };
     law.start(&mut law.scratch(), given(), &[], &mut state).unwrap();
     let (mut input, mut d_state, mut shown) = ([0.0], vec![0.0; state.len()], vec![0.0; total(&law.shown())]);
-    let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+    let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
     law.evaluate(&mut law.scratch(), given(), &state, asked).unwrap();
     assert!(shown.last().unwrap().abs() < 1e-15, "{shown:?}");
 }
@@ -232,7 +232,7 @@ fn thm7_the_filter_starts_such_that_it_stands_still() {
     };
     let output = [0.2, -0.4, 0.1, 0.88, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let target = [[0.1, 0.0, 0.0, 0.0, 0.0], [0.0; 5], [0.0; 5], [1.0, 0.0, 0.0, 0.0, 0.0]];
-    let given = || Given {
+    let given = || ControllerInput {
         measured: law.see(&output).unwrap(),
         heard: Heard::new(&[0.0], &[0.0; 4], 4).unwrap(),
         target: Jets::from(&target[..]),
@@ -240,7 +240,7 @@ fn thm7_the_filter_starts_such_that_it_stands_still() {
     let mut state = vec![0.0; total(&law.states())];
     law.start(&mut (), given(), &[], &mut state).unwrap();
     let (mut input, mut rate, mut shown) = ([0.0; 3], vec![1.0; state.len()], vec![0.0; total(&law.shown())]);
-    let asked = Asked { input: &mut input, d_state: &mut rate, shown: &mut shown };
+    let asked = ControllerOutput { input: &mut input, d_state: &mut rate, shown: &mut shown };
     law.evaluate(&mut (), given(), &state, asked).unwrap();
     assert!(rate[7..].iter().all(|dy| dy.abs() < 1e-14), "{rate:?}");
 }
@@ -267,7 +267,7 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
         };
         let output = [0.3, 1.2, 0.7, -0.4, 0.5 + error, 0.6 + error];
         let target = [[0.5, 0.0, 0.0, 0.0, 0.0], [0.6, 0.0, 0.0, 0.0, 0.0]];
-        let given = Given {
+        let given = ControllerInput {
             measured: law.see(&output).unwrap(),
             heard: Heard::new(&[0.0], &[0.0; 2], 2).unwrap(),
             target: Jets::from(&target[..]),
@@ -275,7 +275,7 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
         let mut state = vec![0.0; total(&law.states())];
         law.start(&mut law.scratch(), given, &[], &mut state).unwrap();
         let (mut input, mut rate, mut shown) = ([0.0; 2], vec![0.0; state.len()], vec![0.0; total(&law.shown())]);
-        let asked = Asked { input: &mut input, d_state: &mut rate, shown: &mut shown };
+        let asked = ControllerOutput { input: &mut input, d_state: &mut rate, shown: &mut shown };
         law.evaluate(&mut law.scratch(), given, &state, asked).unwrap();
         [rate[7], rate[8]]
     };
@@ -306,7 +306,7 @@ fn eq_45_a_thrust_that_is_kept_above_a_floor_is_trouble_only_where_it_is_none() 
     // It may start below its floor, and is led up to it.
     law.floor = Floor::Kept { floor: 2.0, approach_s: 0.1 };
     assert_eq!([2.1, 1.0, 1e-3, 0.0, -1.0].map(|sigma| told(&law, sigma)), [false, false, false, true, true]);
-    let Some(Trouble::Vanishes { value, floor, .. }) = law.trouble(&[-1.0, 0.0], &[]) else { panic!() };
+    let Some(Singularity::Vanishes { value, floor, .. }) = law.trouble(&[-1.0, 0.0], &[]) else { panic!() };
     assert_eq!((value, floor), (-1.0, 0.0));
 }
 
@@ -342,7 +342,7 @@ fn a_factor_of_a_chain_in_feedback_form_is_the_one_that_is_watched() {
     let x = Expression::variable;
     let known = vec![x(1) + x(1).power(3.0) * 0.2, Expression::number(0.0)];
     let terms = CascadeTerms::new(known, vec![vec![x(0)], vec![x(0)]], Expression::number(1.0)).unwrap();
-    let guide = Guide::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
+    let guide = ReferenceModel::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
     let gains = BacksteppingGains { gains_per_s: vec![1.0; 2], adaptation: vec![0.5], floor: 0.1 };
     let law = AdaptiveBackstepping::new(&terms, guide, gains, vec![0.0]).unwrap();
     let blocks = law.shown();

@@ -2,7 +2,7 @@
 
 use crate::common::looped::{Looped, polynomial};
 use crate::common::random::Random;
-use forwardstep_core::controller::{Asked, Controller, Given, Jet, Jets, ModelReference};
+use forwardstep_core::controller::{Controller, ControllerInput, ControllerOutput, Jet, Jets, ModelReference};
 use forwardstep_core::plant::Mechanical;
 use forwardstep_core::reference::Heard;
 use forwardstep_core::robot::PointMass;
@@ -85,26 +85,26 @@ fn the_gain_on_the_error_grows_with_the_square_of_phi() {
     let gain = |phi: f64| {
         let input = |x: f64| {
             let output = [x, 0.0];
-            let given = Given {
+            let given = ControllerInput {
                 measured: law.see(&output).unwrap(),
                 heard: Heard::new(&[0.0], &[0.0], 1).unwrap(),
                 target: Jets::from(&[[0.0; 5]]),
             };
             let (mut input, mut d_state, mut shown) = ([0.0], [0.0; 4], [0.0; 3]);
-            let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+            let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
             law.evaluate(&mut (), given, &[x, 0.0, phi, 1.0], asked).unwrap();
             input[0]
         };
         input(1.0) - input(0.0)
     };
     // p = 6/13, as an explanation of the same model has it too.
-    let given = Given {
+    let given = ControllerInput {
         measured: law.see(&[0.0; 2]).unwrap(),
         heard: Heard::new(&[0.0], &[0.0], 1).unwrap(),
         target: Jets::from(&[[0.0; 5]]),
     };
     let mut d_state = [0.0; 4];
-    let asked = Asked { input: &mut [0.0], d_state: &mut d_state, shown: &mut [0.0; 3] };
+    let asked = ControllerOutput { input: &mut [0.0], d_state: &mut d_state, shown: &mut [0.0; 3] };
     law.evaluate(&mut (), given, &[0.0, 0.0, 13.0, 1.0], asked).unwrap();
     assert!((d_state[2] + 6.0).abs() < 1e-12);
     assert!((gain(0.0) + 2.0).abs() < 1e-12, "α₀ m̂ alone");
@@ -116,7 +116,7 @@ fn model_reference_control_refuses_wrong_lengths() {
     let law = ModelReference { axes: 2, alpha: [2.0, 3.0], filter_per_s: 10.0, adaptation: 4.0, estimate_start: 1.0 };
     assert!(law.see(&[0.0; 3]).is_err());
     let rests = [[0.0; 5]; 2];
-    let given = |target: &'static [Jet]| Given {
+    let given = |target: &'static [Jet]| ControllerInput {
         measured: law.see(&[0.0; 4]).unwrap(),
         heard: Heard::new(&[0.0], &[0.0; 2], 2).unwrap(),
         target: Jets::from(target),
@@ -124,7 +124,7 @@ fn model_reference_control_refuses_wrong_lengths() {
     let rests: &'static [Jet; 2] = Box::leak(Box::new(rests));
     let refused = |target, [state, rate, input, shown]: [usize; 4]| {
         let (mut d_state, mut u, mut told) = (vec![0.0; rate], vec![0.0; input], vec![0.0; shown]);
-        let asked = Asked { input: &mut u, d_state: &mut d_state, shown: &mut told };
+        let asked = ControllerOutput { input: &mut u, d_state: &mut d_state, shown: &mut told };
         law.evaluate(&mut (), given(target), &vec![0.0; state], asked).is_err()
     };
     assert!(!refused(rests, [7, 7, 2, 5]));

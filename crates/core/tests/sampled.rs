@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::agent::{FilterError, Inbox, LimiterError, StepError, VelocityFilter};
-use forwardstep_core::controller::{Guide, PositionOnly};
+use forwardstep_core::controller::{PositionOnly, ReferenceModel};
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::{Mechanical, Plant, Rotorcraft, Spacecraft, TaskArm, Vehicle, Wheels, total};
 use forwardstep_core::reference::{Choice, Consensus, Derived, Position, PositionVelocity, Sliding, SmoothFollowing};
@@ -23,7 +23,7 @@ fn mass() -> Recipe {
 }
 
 /// The same without velocity, towards agreement.
-fn blind(knows: Guide) -> Recipe {
+fn blind(knows: ReferenceModel) -> Recipe {
     let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
     let law = PositionOnly {
         axes: 1,
@@ -37,12 +37,12 @@ fn blind(knows: Guide) -> Recipe {
     Recipe::feedback(&plant, law)
 }
 
-fn agreeing() -> Guide {
-    Guide::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap())
+fn agreeing() -> ReferenceModel {
+    ReferenceModel::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap())
 }
 
-fn tracking() -> Guide {
-    Guide::Tracking { alpha: vec![6.0, 11.0, 6.0] }
+fn tracking() -> ReferenceModel {
+    ReferenceModel::Tracking { alpha: vec![6.0, 11.0, 6.0] }
 }
 
 /// t², on one axis.
@@ -269,7 +269,7 @@ fn a_recipe_that_does_not_fit_is_refused_with_what_is_wrong() {
     };
     assert_eq!(refused(&offset), RecipeError::NoOffsets);
     let five = |recipe: &mut Recipe| {
-        *recipe = blind(Guide::Tracking { alpha: vec![1.0, 5.0, 10.0, 10.0, 5.0] });
+        *recipe = blind(ReferenceModel::Tracking { alpha: vec![1.0, 5.0, 10.0, 10.0, 5.0] });
         recipe.target = Some(Target::Follow(square()));
     };
     assert_eq!(refused(&five), RecipeError::Derivatives { needed: 5, known: 4 });

@@ -6,7 +6,7 @@ mod measured;
 use crate::common::looped::{Looped, polynomial};
 use crate::common::random::{Random, inertia_of};
 use forwardstep_core::attitude::{dot, product, rotate};
-use forwardstep_core::controller::{Controller, Jet, NullSpace, TaskSpace, Trouble};
+use forwardstep_core::controller::{Controller, Jet, NullSpace, Singularity, TaskSpace};
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::law::SlotineLi;
 use forwardstep_core::plant::{Mechanical, TaskArm};
@@ -471,7 +471,7 @@ fn thm6_a_determinant_that_vanishes_or_changes_sign_is_trouble() {
             shown[13] = value * start / 0.8;
             let trouble = law.trouble(&state, &shown);
             assert_eq!(trouble.is_none(), fine, "{start} {value}");
-            if let Some(Trouble::Vanishes { floor, .. }) = trouble {
+            if let Some(Singularity::Vanishes { floor, .. }) = trouble {
                 assert!((floor - 0.02 * start).abs() < 1e-15);
             }
         }

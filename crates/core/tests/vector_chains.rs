@@ -2,7 +2,8 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::controller::{
-    Asked, ChainError, Controller, Following, Given, Guide, Jet, Jets, Linearising, Trouble, Truth, VectorLinearising,
+    ChainError, Controller, ControllerInput, ControllerOutput, Following, Jet, Jets, Linearising, ReferenceModel,
+    Singularity, Truth, VectorLinearising,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
@@ -22,18 +23,18 @@ fn numbers(seed: u64, count: usize) -> Vec<f64> {
     (0..count).map(|_| next()).collect()
 }
 
-fn following(guide: Guide) -> Following {
+fn following(guide: ReferenceModel) -> Following {
     Following { guide, gain_per_s: 1.7, floor: 1e-3 }
 }
 
-fn consensus(roots: &[f64]) -> Guide {
-    Guide::Consensus(Consensus::<Position>::new([(roots, 0.0)]).unwrap())
+fn consensus(roots: &[f64]) -> ReferenceModel {
+    ReferenceModel::Consensus(Consensus::<Position>::new([(roots, 0.0)]).unwrap())
 }
 
-fn tracking(roots: &[f64]) -> Guide {
+fn tracking(roots: &[f64]) -> ReferenceModel {
     let mut alpha = polynomial(roots).unwrap();
     alpha.pop();
-    Guide::Tracking { alpha }
+    ReferenceModel::Tracking { alpha }
 }
 
 fn x(index: usize) -> Expression {
@@ -65,11 +66,14 @@ where
 {
     let (x, state) = at;
     let sums: Vec<f64> = numbers(99, axes);
-    let given =
-        Given { measured: law.see(x).unwrap(), heard: Heard::new(&[1.2], &sums, axes).unwrap(), target: target.into() };
+    let given = ControllerInput {
+        measured: law.see(x).unwrap(),
+        heard: Heard::new(&[1.2], &sums, axes).unwrap(),
+        target: target.into(),
+    };
     let (mut input, mut d_state) = (vec![f64::NAN; axes], vec![f64::NAN; state.len()]);
     let (mut shown, mut d_x) = (vec![f64::NAN; total(&law.shown())], vec![f64::NAN; x.len()]);
-    let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+    let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
     law.evaluate(&mut law.scratch(), given, state, asked).unwrap();
     plant.rate(&mut plant.scratch(), x, &input, w, &mut d_x).unwrap();
     Loop { input, d_state, shown, d_x }
@@ -103,7 +107,7 @@ fn eq_43_v_falls_as_the_proof_says_whatever_pulls_at_the_other_axis() {
                 value += 0.5 * delta * delta / gamma[j];
             }
             let sums = [0.0; 2];
-            let given = Given {
+            let given = ControllerInput {
                 measured: law.see(x).unwrap(),
                 heard: Heard::new(&[1.2], &sums, 2).unwrap(),
                 target: Jets::from(&target[..*targets]),
@@ -158,7 +162,7 @@ fn a_start_without_other_wishes_has_no_s_and_wishes_are_granted() {
     let law = VectorLinearising::adaptive(coupled(), following(consensus(&[1.0, 2.0])), vec![1.0; 2], vec![0.3, 0.4]);
     let law = law.unwrap();
     let x = [0.1, 0.2, 0.3, 0.4];
-    let given = || Given {
+    let given = || ControllerInput {
         measured: law.see(&x).unwrap(),
         heard: Heard::new(&[1.2], &[0.0; 2], 2).unwrap(),
         target: Jets::NONE,
@@ -185,7 +189,7 @@ fn a_matrix_that_nears_one_without_an_inverse_is_told_by_its_smallest_singular_v
         let smallest = (at.abs() - 1.0_f64).abs();
         assert!((found.shown[6] - smallest).abs() < 1e-12, "{at}: {:?}", found.shown);
         match law.trouble(&[0.1, 0.2, 0.0, 0.0], &found.shown) {
-            Some(Trouble::Vanishes { signal: Signal::Divisor, value, floor, .. }) => {
+            Some(Singularity::Vanishes { signal: Signal::Divisor, value, floor, .. }) => {
                 assert!(vanishes && value < floor, "{at}");
             }
             None => assert!(!vanishes, "{at}"),

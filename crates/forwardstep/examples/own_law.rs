@@ -7,7 +7,7 @@
 use std::error::Error;
 
 use forwardstep::core::LengthError;
-use forwardstep::core::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
+use forwardstep::core::controller::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use forwardstep::core::plant::Mechanical;
 use forwardstep::core::reference::Position;
 use forwardstep::core::robot::{Lagrangian, PlanarArm, PlanarLinks, TwoVelocity};
@@ -92,7 +92,7 @@ struct PdPlusControl {
 }
 
 /// The error and its rate.
-fn errors(given: Given<'_, PdPlusControl>) -> Result<([f64; 2], [f64; 2]), LengthError> {
+fn errors(given: ControllerInput<'_, PdPlusControl>) -> Result<([f64; 2], [f64; 2]), LengthError> {
     LengthError::check("the target", 2, given.target.len())?;
     let (q, dq) = given.measured.split_at(2);
     let desired = [0, 1].map(|k| given.target.jet(k));
@@ -132,11 +132,23 @@ impl Controller for PdPlusControl {
         Ok(output)
     }
 
-    fn start(&self, (): &mut (), _: Given<'_, Self>, _: &[Vec<f64>], _: &mut [f64]) -> Result<(), LengthError> {
+    fn start(
+        &self,
+        (): &mut (),
+        _: ControllerInput<'_, Self>,
+        _: &[Vec<f64>],
+        _: &mut [f64],
+    ) -> Result<(), LengthError> {
         Ok(())
     }
 
-    fn evaluate(&self, (): &mut (), given: Given<'_, Self>, _: &[f64], asked: Asked<'_>) -> Result<(), LengthError> {
+    fn evaluate(
+        &self,
+        (): &mut (),
+        given: ControllerInput<'_, Self>,
+        _: &[f64],
+        asked: ControllerOutput<'_>,
+    ) -> Result<(), LengthError> {
         LengthError::check("shown", 2, asked.shown.len())?;
         let (e, de) = errors(given)?;
         let (q, dq) = given.measured.split_at(2);
@@ -153,7 +165,7 @@ impl Controller for PdPlusControl {
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -161,7 +173,7 @@ impl Controller for PdPlusControl {
         &self,
         (): &mut (),
         truth: Truth<'_, Mechanical<PlanarArm>>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         _: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -174,7 +174,7 @@ impl Law for Level {
         });
         let plant = plant.limited(limit.map_or_else(Vec::new, |limit| vec![limit]));
         // u = A (ẋ_d − k (x − x_d)), so that V = ½ A (x − x_d)² loses k A (x − x_d)².
-        let law = move |given: FeedbackInput<'_>, asked: Asked<'_>| {
+        let law = move |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
             let [x_d, dx_d, ..] = given.target(0);
             asked.shown[0] = given.output[0] - x_d;
             asked.input[0] = area * (dx_d - k * asked.shown[0]);

@@ -7,7 +7,9 @@ pub use std::ops::Range;
 pub use std::sync::Arc;
 
 pub use forwardstep_core::LengthError;
-pub use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Trouble, Truth};
+pub use forwardstep_core::controller::{
+    Balance, Controller, ControllerInput, ControllerOutput, Feedback, FeedbackInput, Singularity, Truth,
+};
 pub use forwardstep_core::plant::{Plant, VectorField};
 pub use forwardstep_core::reference::{
     AxisInput, AxisOutput, PerAxis, Position, PositionVelocity, RootPair, RootSet, polynomial,

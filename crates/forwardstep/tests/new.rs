@@ -192,7 +192,7 @@ fn mistakes_are_status_two_and_nothing_is_overwritten() {
         (&["new.toml", "--leader", "--delay", "radio"], "leader-over-late-links"),
         (&["new.toml", "--leader", "--order", "2"], "cannot be used with"),
         (&["new.toml", "--robot", "spacecraft", "--graph", "star"], "a target of its own"),
-        (&["new.toml", "--robot", "ship", "--dry-friction"], "no joints that could rub"),
+        (&["new.toml", "--robot", "ship", "--dry-friction"], "no joints, so that friction has no effect"),
         (&["new.toml", "--like", "theorem-11"], "did you mean"),
         (&["new.toml", "--order", "0"], "must be a whole number from 1 to 8"),
         (&["new.toml", "--graph", "rings"], "ring"),

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::support::assert_report_is_rebuilt;
 use forwardstep::check::{Answer, Id, Rigour, check};
-use forwardstep::core::controller::{Asked, Balance, Feedback, FeedbackInput, Truth};
+use forwardstep::core::controller::{Balance, ControllerOutput, Feedback, FeedbackInput, Truth};
 use forwardstep::core::plant::VectorField;
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{LimitKind, Metrics};
@@ -209,7 +209,7 @@ impl Law for Boasts {
     fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
         let states = [(Signal::Position, 1)];
         let plant = VectorField::new(1, states, [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0]);
-        let law = |given: FeedbackInput<'_>, asked: Asked<'_>| {
+        let law = |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
             let [x_d, dx_d, ..] = given.target(0);
             asked.input[0] = dx_d - 0.1 * (given.output[0] - x_d);
         };

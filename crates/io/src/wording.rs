@@ -4,10 +4,10 @@ pub(crate) use forwardstep_sim::quantity::{about, entries as entry_count, number
 
 use crate::shown;
 
-/// Mistakes that are only counted, `7 more mistakes are told when these are mended`.
+/// Mistakes that are only counted, `7 more mistakes are reported once these are mended`.
 pub(crate) fn more_mistakes(count: usize) -> String {
     let words = if count == 1 { "mistake is" } else { "mistakes are" };
-    format!("{count} more {words} told when these are mended")
+    format!("{count} more {words} reported once these are mended")
 }
 
 /// "1 list", "2 lists".

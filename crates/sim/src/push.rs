@@ -321,7 +321,7 @@ pub enum PushError {
         axes: usize,
     },
     /// A hand on axes that no force moves.
-    #[error("a hand holds axes that forces move, and this robot has none")]
+    #[error("a virtual spring holds axes that forces move, and this robot has none")]
     NoSpring,
     /// A moving body that the robot has not.
     #[error("it acts on moving body {body}, counted from 0, of a robot with {bodies}")]

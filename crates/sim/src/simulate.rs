@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_core::controller::Trouble;
+use forwardstep_core::controller::Singularity;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Failure, FailureCause, Integrator, Refuted, Step};
@@ -185,7 +185,7 @@ pub(crate) fn simulate_with(
 
 /// What a law divides by, where it comes too close to zero in the state that was evaluated last.
 fn vanished(closed_loop: &ClosedLoop<'_>, integrator: &Integrator<'_>, t_s: f64) -> Option<Breakdown> {
-    let (agent, Trouble::Vanishes { signal, axis, value, floor }) = closed_loop.trouble(integrator.state())?;
+    let (agent, Singularity::Vanishes { signal, axis, value, floor }) = closed_loop.trouble(integrator.state())?;
     Some(Breakdown { t_s, agent, signal, axis, cause: BreakdownCause::Vanished { value, floor } })
 }
 

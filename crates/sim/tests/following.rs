@@ -294,7 +294,7 @@ fn prop_with_delays_everybody_comes_as_near_to_the_leader_as_they_let_it() {
 
 /// V + ∫ sᵀ(K + D)s = V(0): what produces z does not matter to it.
 #[test]
-fn thm8_thm9_remark12_the_books_balance_whatever_the_sign() {
+fn thm8_thm9_remark12_the_lyapunov_balance_holds_whatever_the_sign() {
     for design in DESIGNS {
         for choice in [Choice::Implicit, Choice::Explicit, Choice::Layer { width: 0.05 }] {
             let outcome = run(&arms(design, choice, 0.0, 8.0));

@@ -234,7 +234,7 @@ fn jointed() -> (AgentSetup, LinkPoint) {
 }
 
 #[test]
-fn thm_lyapunov_books_balance_while_pushed() {
+fn thm_the_lyapunov_balance_holds_while_pushed() {
     let rtol = 1e-8;
     let tip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
     let (tree, point) = jointed();

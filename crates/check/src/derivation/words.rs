@@ -303,11 +303,11 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
             "Without that, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
              `forwardstep check` says. {bounded}, and so does the distance from the target."
         ),
-        Led::Desired(_) => "What becomes of it without that is what the scenario asks for, and no theorem of the paper says where that leads.".into(),
+        Led::Desired(_) => "With s = 0 the desired dynamics as stated are left, and no theorem of the paper covers their convergence.".into(),
         Led::Backstepping => "Where the graph switches or a delay jumps the derivative of what is heard is infinite, and the paper promises \
                               nothing there."
             .into(),
-        Led::Outside(..) | Led::Refuted(..) => "What becomes of it without that is what the author of the reference dynamics declares.".into(),
+        Led::Outside(..) | Led::Refuted(..) => "With s = 0 the reference dynamics do what their author declares.".into(),
     };
     let moved = if case.lambda.is_zero() {
         ""

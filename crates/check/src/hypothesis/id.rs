@@ -150,7 +150,7 @@ table! {
         "a target without a bound: what the law asks for then has none either";
     BoundedLeader, "bounded-leader", "Section V-D", Source::Paper,
         "the velocity, acceleration and jerk of the leader are bounded",
-        "a leader whose velocity, acceleration or jerk grows for ever: no γ is then large enough for ever";
+        "a leader whose velocity, acceleration or jerk grows for ever: no constant γ exceeds what drives it for all time";
     SignGain, "sign-gain", "(113), Theorem 9", Source::Paper,
         "γ exceeds the largest entry of |…| at any time",
         "a leader that is driven away harder than γ: those who follow it then fall behind";
@@ -208,11 +208,11 @@ table! {
         "the angular velocity is the one that the law asks for",
         "an airframe that turns later than it is asked to: the thrust meanwhile points elsewhere";
     EveryWrench, "every-wrench", "own derivation", Source::Derived,
-        "every thrust and every torque can be had",
+        "every thrust and torque that is asked for can be produced",
         "a manoeuvre for which rotors or thrusters are too weak, or would have to push backwards";
     Declared, "declared", "declared by its author", Source::Declared,
         "what the author says of … is so",
-        "whatever in it is not so";
+        "a property that is declared and false";
     TaskSpaceGains, "task-space-gains", "Theorem 6", Source::Paper,
         "K*, K, Γ and Λ are symmetric positive definite, κ and α are positive",
         "a gain that is not positive definite, or a κ or an α that is not positive: V then need not fall";
@@ -220,8 +220,8 @@ table! {
         "the estimated Jacobian of … stays away from singularity",
         "a posture in which the estimated Jacobian loses its rank: joints would then have to move without bound, and a run stops there";
     TargetWithinReach, "target-within-reach", "own derivation", Source::Derived,
-        "the target of … keeps within the reach of its tip, where alone the Jacobian can stay regular",
-        "a target farther away, or nearer, than the tip can come";
+        "the target of … keeps within the reach of its end-effector, where alone the Jacobian can stay regular",
+        "a target farther away, or nearer, than the end-effector can come";
     CertainRegressor, "certain-regressor", "own derivation", Source::Derived,
         "the regressor of … depends on nothing uncertain",
         "a length that is uncertain, and enters the regressor";
@@ -248,7 +248,7 @@ table! {
         "a target that turns, for a body whose moments of inertia differ: an error then stays";
     StartAttitude, "start-attitude", "own derivation", Source::Derived,
         "the start of … is not half a turn from the attitude of its target",
-        "a start half a turn from the target: nothing then draws the body to either side";
+        "a start half a turn from the target: the error then gives no direction of rotation";
     NonzeroQuaternion, "nonzero-quaternion", "own derivation", Source::Derived,
         "the quaternion that … is to follow is never zero",
         "a quaternion that becomes zero, which is no attitude";

@@ -80,7 +80,7 @@ impl About {
             About::ThrustGains => "a mass that is not adapted is known",
             About::Thrust => "no thrust comes to zero",
             About::AngularVelocity => "the angular velocity is the one",
-            About::Rotors => "every thrust and every torque can be had",
+            About::Rotors => "every thrust and torque that is asked for can be produced",
             About::TaskSpaceGains => "K*, K, Γ and Λ are symmetric",
             About::Determinant => "stays away from singularity",
             About::Regressor => "depends on nothing uncertain",

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::{Guide, Leads};
+use forwardstep_core::controller::{ReferenceModel, ReferenceModelInput};
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::{Formulas, Plant, Vehicle};
 use forwardstep_core::reference::{Consensus, Heard, Position, polynomial};
@@ -20,10 +20,15 @@ use super::moment::Jets;
 use crate::common::{edge, kinds, masses, noise, run};
 
 /// z^(ℓ) of a guide for a plant of order k.
-fn guided(guide: &Guide, k: usize, measured: &[f64], z: &[f64], heard: [f64; 2], target: &[[f64; 5]]) -> f64 {
+fn guided(guide: &ReferenceModel, k: usize, measured: &[f64], z: &[f64], heard: [f64; 2], target: &[[f64; 5]]) -> f64 {
     let mut rate = vec![0.0; z.len()];
     let sums = [heard[1]];
-    let leads = Leads { measured, state: z, heard: Heard::new(&heard[..1], &sums, 1).unwrap(), target: target.into() };
+    let leads = ReferenceModelInput {
+        measured,
+        state: z,
+        heard: Heard::new(&heard[..1], &sums, 1).unwrap(),
+        target: target.into(),
+    };
     guide.rate(k, 1, leads, &mut guide.work(1), &mut rate).unwrap();
     *rate.last().unwrap()
 }
@@ -33,10 +38,10 @@ fn target() -> Path {
 }
 
 /// α₀ … α_{N−1}.
-fn tracked(roots: &[f64]) -> Guide {
+fn tracked(roots: &[f64]) -> ReferenceModel {
     let mut alpha = polynomial(roots).unwrap();
     alpha.pop();
-    Guide::Tracking { alpha }
+    ReferenceModel::Tracking { alpha }
 }
 
 #[test]
@@ -101,7 +106,7 @@ fn eq_identities_of_a9_and_of_remark_7_hold_along_real_runs() {
                     let told = [heard.iter().map(|(edge, _)| weight(edge)).sum(), sum.sum()];
                     let guide = match tracks {
                         true => tracked(&roots.real),
-                        false => Guide::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
+                        false => ReferenceModel::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
                     };
                     z.push(guided(&guide, 2, &own[..1], &z, told, &[followed]));
                     let y = at(&outcome, agent, Signal::Filter, 0, row);
@@ -179,7 +184,7 @@ fn eq_identities_of_43_hold_along_real_runs_of_chains_of_any_order() {
                     let told = [heard.iter().map(|(edge, _)| weight(edge)).sum(), sum.sum()];
                     let guide = match tracks {
                         true => tracked(&roots.real),
-                        false => Guide::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
+                        false => ReferenceModel::Consensus(Consensus::new([(roots, 0.0)]).unwrap()),
                     };
                     z.push(guided(&guide, k, &x, &z, told, &[followed]));
                     x.push(-x[0] * x[0] * x[0] + 2.0 * at(&outcome, agent, Signal::Torque, 0, row));

@@ -40,10 +40,10 @@
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, positive, vanishes};
-use super::guide::{Guide, GuideError, GuideWork, Leads};
 use super::interior::{Interior, Metric};
 use super::recursion::{Recursion, RecursionWork, Stepped};
-use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use super::reference_model::{ReferenceModel, ReferenceModelError, ReferenceModelInput, ReferenceModelWork};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jets, Singularity, Truth};
 use crate::LengthError;
 use crate::law::{ParameterBounds, Range};
 use crate::plant::{Cascade, CascadeTerms};
@@ -66,7 +66,7 @@ use crate::signal::{Block, Signal};
 ///
 /// ```
 /// use forwardstep_core::controller::{
-///     AdaptiveBackstepping, Asked, BacksteppingGains, Balance, Controller, Given, Jets, Guide, Truth,
+///     AdaptiveBackstepping, ControllerOutput, BacksteppingGains, Balance, Controller, ControllerInput, Jets, ReferenceModel, Truth,
 /// };
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Cascade, CascadeTerms, Plant};
@@ -75,7 +75,7 @@ use crate::signal::{Block, Signal};
 /// // ẋ₁ = x₂ + θ x₁²,   ẋ₂ = u
 /// let square = Expression::variable(0) * Expression::variable(0);
 /// let terms = CascadeTerms::strict(vec![vec![square], vec![Expression::number(0.0)]])?;
-/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let guide = ReferenceModel::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
 /// let gains = BacksteppingGains { gains_per_s: vec![2.0, 3.0], adaptation: vec![1.5], floor: 0.1 };
 /// let law = AdaptiveBackstepping::new(&terms, guide, gains, vec![0.2])?;
 /// let plant = Cascade::new(terms, vec![0.7])?;
@@ -84,9 +84,9 @@ use crate::signal::{Block, Signal};
 ///
 /// // V and its loss, and where plant and law are after a short time.
 /// let after = |x: [f64; 2], state: &[f64], h: f64| -> Result<(Balance, [f64; 2], Vec<f64>), Box<dyn std::error::Error>> {
-///     let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
+///     let given = ControllerInput { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 ///     let (mut input, mut d_state, mut shown, mut dx) = ([0.0], vec![0.0; size], vec![0.0; shown_size], [0.0; 2]);
-///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+///     let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 ///     law.evaluate(&mut law.scratch(), given, state, asked)?;
 ///     plant.rate(&mut plant.scratch(), &x, &input, &[], &mut dx)?;
 ///     let truth = Truth { plant: &plant, state: &x, external: &[] };
@@ -103,7 +103,7 @@ use crate::signal::{Block, Signal};
 #[derive(Clone, Debug)]
 pub struct AdaptiveBackstepping {
     order: usize,
-    guide: Guide,
+    guide: ReferenceModel,
     gains_per_s: Vec<f64>,
     adaptation: Vec<f64>,
     estimate_start: Vec<f64>,
@@ -132,7 +132,7 @@ impl AdaptiveBackstepping {
     /// differentiated has no derivative.
     pub fn new(
         terms: &CascadeTerms,
-        guide: Guide,
+        guide: ReferenceModel,
         gains: BacksteppingGains,
         estimate_start: Vec<f64>,
     ) -> Result<Self, ChainError> {
@@ -145,7 +145,7 @@ impl AdaptiveBackstepping {
     /// As [`AdaptiveBackstepping::new`], and when an estimate does not start between its bounds.
     pub fn within(
         terms: &CascadeTerms,
-        guide: Guide,
+        guide: ReferenceModel,
         gains: BacksteppingGains,
         estimate_start: Vec<f64>,
         bounds: Option<&ParameterBounds>,
@@ -154,7 +154,7 @@ impl AdaptiveBackstepping {
         let n = terms.order();
         guide.check(1, n)?;
         if (0..guide.vectors(1)).any(|r| !matches!(guide.signal(r), Signal::Reference(_))) {
-            return Err(GuideError::NoDerivatives.into());
+            return Err(ReferenceModelError::NoDerivatives.into());
         }
         LengthError::check("gains of the steps", n, gains_per_s.len())?;
         LengthError::check("adaptation gains", terms.parameters(), adaptation.len())?;
@@ -187,7 +187,7 @@ impl AdaptiveBackstepping {
     }
 
     /// Where z leads.
-    pub fn guide(&self) -> &Guide {
+    pub fn guide(&self) -> &ReferenceModel {
         &self.guide
     }
 
@@ -217,7 +217,7 @@ fn interior(bounds: &ParameterBounds, start: &[f64]) -> Result<Interior, ChainEr
 /// Working memory of [`AdaptiveBackstepping`].
 #[derive(Clone, Debug)]
 pub struct BacksteppingWork {
-    guide: GuideWork,
+    guide: ReferenceModelWork,
     recursion: RecursionWork,
 }
 
@@ -270,7 +270,7 @@ impl Controller for AdaptiveBackstepping {
     fn start(
         &self,
         _: &mut BacksteppingWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -293,12 +293,12 @@ impl Controller for AdaptiveBackstepping {
     fn evaluate(
         &self,
         work: &mut BacksteppingWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let (n, p, vectors) = (self.order, self.parameters(), self.vectors());
-        let Asked { input, d_state, shown } = asked;
+        let ControllerOutput { input, d_state, shown } = asked;
         LengthError::check("state", vectors + p, state.len())?;
         LengthError::check("rate", vectors + p, d_state.len())?;
         LengthError::check("input", 1, input.len())?;
@@ -311,7 +311,7 @@ impl Controller for AdaptiveBackstepping {
             *hat = self.estimate(k, *integrated);
         }
         let target = if self.guide.tracks() { given.target } else { Jets::NONE };
-        let leads = Leads { measured: &x[..1], state: z, heard: given.heard, target };
+        let leads = ReferenceModelInput { measured: &x[..1], state: z, heard: given.heard, target };
         self.guide.rate(1, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
 
         let given = &mut work.recursion.given;
@@ -333,7 +333,7 @@ impl Controller for AdaptiveBackstepping {
         Ok(())
     }
 
-    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Singularity> {
         vanishes(*shown.get(self.vectors() + self.order)?, self.floor)
     }
 
@@ -343,7 +343,7 @@ impl Controller for AdaptiveBackstepping {
         &self,
         work: &mut BacksteppingWork,
         truth: Truth<'_, Cascade>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -38,7 +38,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Balance, Controller, Given, Jet, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jet, Singularity, Truth};
 use crate::attitude::{
     Desired, Quaternion, angle, cross, difference, dot, normalized, rate_inertial, rotate, rotate_back, times,
 };
@@ -73,7 +73,7 @@ pub struct AttitudeMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, AttitudeTracking, Controller, Given, Jets, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, AttitudeTracking, Controller, ControllerInput, Jets, Truth};
 /// use forwardstep_core::plant::{Spacecraft, Wheels};
 /// use forwardstep_core::reference::Heard;
 ///
@@ -91,10 +91,10 @@ pub struct AttitudeMeasured<'a> {
 /// };
 /// let at = |entry: f64| [entry, 0.0, 0.0, 0.0, 0.0];
 /// let target = [at(0.0), at(0.0), at(0.0), at(1.0)];
-/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: Jets::from(&target) };
+/// let given = ControllerInput { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: Jets::from(&target) };
 /// let (mut own, mut d_own, mut input, mut shown) = ([0.0; 11], [0.0; 11], [0.0; 3], [0.0; 17]);
 /// law.start(&mut (), given, &[], &mut own)?;
-/// law.evaluate(&mut (), given, &own, Asked { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
+/// law.evaluate(&mut (), given, &own, ControllerOutput { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
 /// // (97): ż = −α₁ Δq_v
 /// assert!((d_own[0] + 1.5 * 0.6).abs() < 1e-12 && d_own[1].abs() < 1e-12);
 /// let balance = law.balance(&mut (), Truth { plant: &craft, state: &state, external: &[] }, given, &own, &shown)?;
@@ -208,7 +208,7 @@ impl Controller for AttitudeTracking {
     fn start(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -235,9 +235,9 @@ impl Controller for AttitudeTracking {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("state", STATE, state.len())?;
         LengthError::check("rate", STATE, asked.d_state.len())?;
@@ -286,7 +286,7 @@ impl Controller for AttitudeTracking {
         }
     }
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -294,7 +294,7 @@ impl Controller for AttitudeTracking {
         &self,
         (): &mut (),
         truth: Truth<'_, Self::Plant>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

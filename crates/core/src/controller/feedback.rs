@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{Asked, Balance, Controller, Given, Jet, Jets, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jet, Jets, Singularity, Truth};
 use crate::LengthError;
 use crate::plant::{Plant, total};
 use crate::reference::{Heard, Position};
@@ -16,7 +16,7 @@ use crate::signal::{Block, Signal};
 /// **Requires** of its closures that they allocate nothing and do not panic when every slice is as long as its blocks say.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Balance, Controller, Feedback, FeedbackInput, Given, Jets, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, Balance, Controller, Feedback, FeedbackInput, ControllerInput, Jets, Truth};
 /// use forwardstep_core::plant::{Plant, VectorField};
 /// use forwardstep_core::reference::Heard;
 /// use forwardstep_core::signal::Signal;
@@ -24,7 +24,7 @@ use crate::signal::{Block, Signal};
 /// // A ẋ = u. x → x_d by u = A (ẋ_d − k (x − x_d)), and V = ½ A (x − x_d)² loses k A (x − x_d)².
 /// let (area, k) = (2.0, 0.5);
 /// let tank = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], move |_, u, dx| dx[0] = u[0] / area);
-/// let law = move |given: FeedbackInput<'_>, asked: Asked<'_>| {
+/// let law = move |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
 ///     let [x_d, dx_d, ..] = given.target(0);
 ///     asked.shown[0] = given.output[0] - x_d;
 ///     asked.input[0] = area * (dx_d - k * asked.shown[0]);
@@ -36,8 +36,8 @@ use crate::signal::{Block, Signal};
 /// let law = Feedback::new(&tank, [(Signal::Error, 1)], law, balance);
 ///
 /// let (x, mut u, mut dx, mut error) = ([3.0], [0.0], [0.0], [0.0]);
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[1.0, 0.0, 0.0, 0.0, 0.0]]) };
-/// law.evaluate(&mut (), given, &[], Asked { input: &mut u, d_state: &mut [], shown: &mut error })?;
+/// let given = ControllerInput { measured: law.see(&x)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[1.0, 0.0, 0.0, 0.0, 0.0]]) };
+/// law.evaluate(&mut (), given, &[], ControllerOutput { input: &mut u, d_state: &mut [], shown: &mut error })?;
 /// tank.rate(&mut (), &x, &u, &[], &mut dx)?;
 /// let truth = Truth { plant: &tank, state: &x, external: &[] };
 /// // V̇ = A (x − x_d) ẋ here.
@@ -72,7 +72,7 @@ pub struct FeedbackInput<'a> {
 impl<P, L, B> Feedback<P, L, B>
 where
     P: Plant,
-    L: Fn(FeedbackInput<'_>, Asked<'_>),
+    L: Fn(FeedbackInput<'_>, ControllerOutput<'_>),
     B: Fn(Truth<'_, P>, FeedbackInput<'_>, &[f64]) -> Balance,
 {
     /// A feedback without a state of its own. `shown` says what it tells of itself, `law` fills in the input and what is shown,
@@ -156,7 +156,7 @@ impl<P, L, B> fmt::Debug for Feedback<P, L, B> {
 impl<P, L, B> Controller for Feedback<P, L, B>
 where
     P: Plant,
-    L: Fn(FeedbackInput<'_>, Asked<'_>) + Clone + Send + Sync + 'static,
+    L: Fn(FeedbackInput<'_>, ControllerOutput<'_>) + Clone + Send + Sync + 'static,
     B: Fn(Truth<'_, P>, FeedbackInput<'_>, &[f64]) -> Balance + Clone + Send + Sync + 'static,
 {
     type Plant = P;
@@ -190,7 +190,13 @@ where
         Ok(output)
     }
 
-    fn start(&self, (): &mut (), _: Given<'_, Self>, _: &[Vec<f64>], state: &mut [f64]) -> Result<(), LengthError> {
+    fn start(
+        &self,
+        (): &mut (),
+        _: ControllerInput<'_, Self>,
+        _: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", self.start.len(), state.len())?;
         state.copy_from_slice(&self.start);
         Ok(())
@@ -199,9 +205,9 @@ where
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("input", self.inputs, asked.input.len())?;
         LengthError::check("rate", self.start.len(), asked.d_state.len())?;
@@ -213,7 +219,7 @@ where
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -221,7 +227,7 @@ where
         &self,
         (): &mut (),
         truth: Truth<'_, P>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {
@@ -239,7 +245,7 @@ mod tests {
     /// ẋ = u with an integrator: χ̇ = x − x_d, u = −x − χ.
     fn with_integrator() -> impl Controller<Plant: Plant<Scratch = ()>, Scratch = (), Exchange = Position> {
         let plant = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0]);
-        let law = |given: FeedbackInput<'_>, asked: Asked<'_>| {
+        let law = |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
             asked.shown[0] = given.output[0] - given.target(0)[0];
             asked.d_state[0] = asked.shown[0];
             asked.input[0] = -given.output[0] - given.state[0];
@@ -256,12 +262,16 @@ mod tests {
         let law = with_integrator();
         let heard = Heard::new(&[], &[0.0], 1).unwrap();
         let mut state = [0.0];
-        let given = |target: &'static [Jet]| Given { measured: law.see(&[3.0]).unwrap(), heard, target: target.into() };
+        let given = |target: &'static [Jet]| ControllerInput {
+            measured: law.see(&[3.0]).unwrap(),
+            heard,
+            target: target.into(),
+        };
         law.start(&mut (), given(&[]), &[], &mut state).unwrap();
         assert_eq!(state, [0.25]);
         let (mut input, mut d_state, mut shown) = ([0.0], [0.0], [0.0]);
         for (target, error) in [(&[][..], 3.0), (&[[1.0, 0.0, 0.0, 0.0, 0.0]][..], 2.0)] {
-            let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+            let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
             law.evaluate(&mut (), given(target), &state, asked).unwrap();
             assert_eq!((input, d_state, shown), ([-3.25], [error], [error]));
         }
@@ -276,9 +286,9 @@ mod tests {
         {
             let target = vec![[0.0; 5]; target];
             let (mut input, mut d_state, mut told) = (vec![0.0; input], vec![0.0; rate], vec![0.0; shown]);
-            let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut told };
+            let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut told };
             let heard = Heard::new(&[], &[0.0], 1).unwrap();
-            let given = Given { measured: law.see(&[1.0]).unwrap(), heard, target: Jets::from(&target[..]) };
+            let given = ControllerInput { measured: law.see(&[1.0]).unwrap(), heard, target: Jets::from(&target[..]) };
             assert!(law.evaluate(&mut (), given, &vec![0.0; state], asked).is_err());
         }
     }

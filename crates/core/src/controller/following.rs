@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::guide::{Guide, GuideError, GuideWork, Leads};
-use super::{Controller, Given, Jets, Trouble};
+use super::reference_model::{ReferenceModel, ReferenceModelError, ReferenceModelInput, ReferenceModelWork};
+use super::{Controller, ControllerInput, Jets, Singularity};
 use crate::LengthError;
 use crate::error::GainError;
 use crate::expression::ExpressionError;
@@ -26,7 +26,7 @@ pub struct ChainMeasured<'a> {
 pub enum ChainError {
     /// The reference dynamics do not suit the plant.
     #[error(transparent)]
-    Guide(#[from] GuideError),
+    ReferenceModel(#[from] ReferenceModelError),
     /// Lists that do not match.
     #[error(transparent)]
     Length(#[from] LengthError),
@@ -88,7 +88,7 @@ pub(super) fn positive(numbers: &[f64]) -> Result<(), GainError> {
 #[derive(Clone, Debug)]
 pub struct Following {
     /// Where z leads.
-    pub guide: Guide,
+    pub guide: ReferenceModel,
     /// k of the laws, 1/s: how fast s vanishes.
     pub gain_per_s: f64,
     /// What |ψ| must stay above.
@@ -99,7 +99,7 @@ pub struct Following {
 #[derive(Clone, Debug)]
 pub struct FollowingWork<S> {
     pub(super) terms: S,
-    guide: GuideWork,
+    guide: ReferenceModelWork,
     /// φ.
     pub(super) phi: Vec<f64>,
 }
@@ -172,7 +172,7 @@ impl Following {
         &self,
         terms: &T,
         work: &mut FollowingWork<T::Scratch>,
-        given: Given<'_, C>,
+        given: ControllerInput<'_, C>,
         x: &[f64],
         state: &[f64],
         (d_state, shown): (&mut [f64], &mut [f64]),
@@ -186,7 +186,7 @@ impl Following {
         LengthError::check("x", k, x.len())?;
         let z = &state[..vectors];
         let target = if self.guide.tracks() { given.target } else { Jets::NONE };
-        let leads = Leads { measured: x, state: z, heard: given.heard, target };
+        let leads = ReferenceModelInput { measured: x, state: z, heard: given.heard, target };
         self.guide.rate(k, 1, leads, &mut work.guide, &mut d_state[..vectors])?;
         let (chi, psi) = terms.terms(&mut work.terms, x, &mut work.phi)?;
         let s = x.last().zip(z.first()).map_or(f64::NAN, |(x, z)| x - z);
@@ -220,13 +220,13 @@ impl Following {
     }
 
     /// ψ close to zero.
-    pub(super) fn trouble(&self, order: usize, shown: &[f64]) -> Option<Trouble> {
+    pub(super) fn trouble(&self, order: usize, shown: &[f64]) -> Option<Singularity> {
         let psi = *shown.get(self.guide.vectors(order) + 1)?;
         vanishes(psi, self.floor)
     }
 }
 
 /// A divisor that is closer to zero than it may be.
-pub(super) fn vanishes(value: f64, floor: f64) -> Option<Trouble> {
-    (value.abs() < floor).then_some(Trouble::Vanishes { signal: Signal::Divisor, axis: 0, value, floor })
+pub(super) fn vanishes(value: f64, floor: f64) -> Option<Singularity> {
+    (value.abs() < floor).then_some(Singularity::Vanishes { signal: Signal::Divisor, axis: 0, value, floor })
 }

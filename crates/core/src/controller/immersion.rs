@@ -2,7 +2,7 @@
 //!
 //! Immersion and invariance asks for target dynamics, a manifold on which the plant behaves like them, and a law that makes
 //! the manifold attractive. Usually the target dynamics are of lower order than the plant. Here they are the reference
-//! dynamics of [`Guide`], of order k + ℓ − 1 ≥ k, as the end of Section IV-B proposes. The coordinates off the manifold are
+//! dynamics of [`ReferenceModel`], of order k + ℓ − 1 ≥ k, as the end of Section IV-B proposes. The coordinates off the manifold are
 //! s and the error ζ of an estimate θ̂ + β(x*), whose second part is a function of the state. With v = d^(k−1)x/dt^(k−1),
 //!
 //! ```text
@@ -38,7 +38,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::LengthError;
 use crate::expression::{Expression, Graph, Interval, Intervals, Tape};
 use crate::law::ParameterBounds;
@@ -47,7 +47,7 @@ use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
 #[cfg(doc)]
-use super::Guide;
+use super::ReferenceModel;
 
 /// Points at which Φ is compared with φ.
 const TRIED: usize = 32;
@@ -67,7 +67,7 @@ const CLOSE: f64 = 1e-9;
 /// Off the manifold the loop is ṡ = −k s − φᵀζ:
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, Immersion};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, Following, ControllerInput, Jets, ReferenceModel, Immersion};
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Chain, Formulas, Plant};
 /// use forwardstep_core::reference::{Consensus, Heard};
@@ -77,17 +77,17 @@ const CLOSE: f64 = 1e-9;
 /// let (zero, one) = (Expression::number(0.0), Expression::number(1.0));
 /// let terms = Formulas::new(2, &zero, vec![phi.clone()], &one)?;
 /// let antiderivative = Immersion::antiderivative(2, &phi).ok_or("x² has no ẋ in it")?;
-/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let guide = ReferenceModel::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
 /// let following = Following { guide, gain_per_s: 5.0, floor: 0.1 };
 /// let (theta, zeta) = (0.7, 0.25);
 /// let law = Immersion::new(terms.clone(), &[antiderivative], following, vec![3.0], vec![theta + zeta])?;
 ///
 /// let x = [0.3, -0.4];
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
+/// let given = ControllerInput { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 /// let (mut state, mut d_state) = ([0.0; 3], [0.0; 3]);
 /// law.start(&mut law.scratch(), given, &[vec![0.5], vec![0.1]], &mut state)?;
 /// let (mut input, mut shown) = ([0.0], [0.0; 5]);
-/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut law.scratch(), given, &state, asked)?;
 ///
 /// let plant = Chain { terms, theta: vec![theta] };
@@ -266,7 +266,7 @@ impl Controller for Immersion {
     fn start(
         &self,
         work: &mut ImmersionWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -283,11 +283,11 @@ impl Controller for Immersion {
     fn evaluate(
         &self,
         work: &mut ImmersionWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
-        let Asked { input, d_state, shown } = asked;
+        let ControllerOutput { input, d_state, shown } = asked;
         let (p, at, x) = (self.terms.parameters(), self.at(), given.measured.x);
         self.following.lengths(&self.terms, p, [state.len(), d_state.len(), input.len(), shown.len()])?;
         let ImmersionWork { following, workspace, out } = work;
@@ -312,7 +312,7 @@ impl Controller for Immersion {
         Ok(())
     }
 
-    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Singularity> {
         self.following.trouble(self.terms.order(), shown)
     }
 
@@ -322,7 +322,7 @@ impl Controller for Immersion {
         &self,
         work: &mut ImmersionWork,
         truth: Truth<'_, Self::Plant>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -25,8 +25,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::guide::{Guide, GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::reference_model::{ReferenceModel, ReferenceModelInput, ReferenceModelWork};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::law::{SlotineLi, SlotineLiOutput};
 use crate::plant::{Mechanical, Plant};
 use crate::reference::Position;
@@ -48,7 +48,7 @@ pub struct MotionMeasured<'a> {
 /// State: z, ż, …, z^(ℓ−1), then ϑ̂ if it is adapted. Shown: z, ż, … as far as they are states, but both in any case; s, ϑ̂ if it is
 /// adapted, q − q_d. The target has N derivatives for every axis, two at least.
 ///
-/// **Source**: (5)–(7) after Slotine and Li, with the reference dynamics of [`Guide`] for k = 2. **Measures**: q, q̇.
+/// **Source**: (5)–(7) after Slotine and Li, with the reference dynamics of [`ReferenceModel`] for k = 2. **Measures**: q, q̇.
 /// **Transmits**: nothing, or q where desired dynamics hear it.
 /// **Requires**: K and Γ symmetric positive definite; a Hurwitz polynomial; q_d with as many bounded derivatives as that has roots, and
 /// two at least.
@@ -58,7 +58,7 @@ pub struct MotionMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::ResolvedGain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, Guide, Jets, JointTracking, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, ReferenceModel, Jets, JointTracking, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant};
 /// use forwardstep_core::reference::Heard;
@@ -67,14 +67,14 @@ pub struct MotionMeasured<'a> {
 /// // A mass of 4 kg comes to rest at zero, its mass known.
 /// let robot = PointMass { dimension: 1 };
 /// let law = SlotineLi { damping: ResolvedGain::Diagonal(vec![8.0]), adaptation: None, bounds: None };
-/// let guide = Guide::Tracking { alpha: vec![2.0] };
+/// let guide = ReferenceModel::Tracking { alpha: vec![2.0] };
 /// let law = JointTracking { robot, guide, law, estimate_start: vec![4.0] };
 /// let plant = Mechanical { robot, theta: vec![4.0] };
 ///
 /// let (state, mut tau, mut rate, mut shown) = ([1.0, 0.5], [0.0], [0.0; 2], [0.0; 4]);
-/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[0.0; 5]]) };
+/// let given = ControllerInput { measured: law.see(&state)?, heard: Heard::new(&[], &[0.0], 1)?, target: Jets::from(&[[0.0; 5]]) };
 /// let mut work = law.scratch();
-/// law.evaluate(&mut work, given, &[], Asked { input: &mut tau, d_state: &mut [], shown: &mut shown })?;
+/// law.evaluate(&mut work, given, &[], ControllerOutput { input: &mut tau, d_state: &mut [], shown: &mut shown })?;
 /// plant.rate(&mut plant.scratch(), &state, &tau, &[], &mut rate)?;
 /// // z = −2 q and ż = −2 q̇, so V = ½ m s² changes by m s (q̈ − ż) = −K s².
 /// let (s, dz) = (0.5 + 2.0, -2.0 * 0.5);
@@ -88,7 +88,7 @@ pub struct JointTracking<R> {
     /// The robot, whose ϑ is unknown.
     pub robot: R,
     /// Tracking with one α at least, or desired dynamics written in what is measured.
-    pub guide: Guide,
+    pub guide: ReferenceModel,
     /// K and Γ.
     pub law: SlotineLi,
     /// ϑ̂(0), or ϑ when it is known.
@@ -99,7 +99,7 @@ pub struct JointTracking<R> {
 #[derive(Clone, Debug)]
 pub struct JointTrackingWork<S> {
     robot: S,
-    guide: GuideWork,
+    guide: ReferenceModelWork,
     /// q, then q̇.
     measured: Vec<f64>,
     z: Vec<f64>,
@@ -143,16 +143,16 @@ where
     fn lead(
         &self,
         work: &mut JointTrackingWork<R::Scratch>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         d_state: &mut [f64],
     ) -> Result<(), LengthError>
     where
         R: Clone + Send + Sync + 'static,
     {
-        let (m, Given { measured: MotionMeasured { q, dq }, heard, target }) = (self.robot.dof(), given);
+        let (m, ControllerInput { measured: MotionMeasured { q, dq }, heard, target }) = (self.robot.dof(), given);
         LengthError::check("target", m, target.len())?;
-        if let Guide::Tracking { alpha } = &self.guide
+        if let ReferenceModel::Tracking { alpha } = &self.guide
             && let [alpha] = alpha[..]
         {
             for (axis, jet) in target.iter().enumerate() {
@@ -164,7 +164,13 @@ where
         }
         work.measured[..m].copy_from_slice(q);
         work.measured[m..].copy_from_slice(dq);
-        self.guide.rate(2, m, Leads { measured: &work.measured, state, heard, target }, &mut work.guide, d_state)?;
+        self.guide.rate(
+            2,
+            m,
+            ReferenceModelInput { measured: &work.measured, state, heard, target },
+            &mut work.guide,
+            d_state,
+        )?;
         work.z.copy_from_slice(&state[..m]);
         work.dz.copy_from_slice(&d_state[..m]);
         Ok(())
@@ -236,7 +242,7 @@ where
     fn start(
         &self,
         _: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -260,12 +266,12 @@ where
     fn evaluate(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let (m, reference, p) = (self.robot.dof(), self.reference_len(), self.estimates());
-        let Asked { input, d_state, shown } = asked;
+        let ControllerOutput { input, d_state, shown } = asked;
         self.check()?;
         LengthError::check("state", reference + p, state.len())?;
         LengthError::check("rate", state.len(), d_state.len())?;
@@ -295,7 +301,7 @@ where
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -303,7 +309,7 @@ where
         &self,
         work: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

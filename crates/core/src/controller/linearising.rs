@@ -7,7 +7,7 @@
 //! θ̂ = θ    or    θ̂' = Γ φ s
 //! ```
 //!
-//! z comes from the reference dynamics of [`Guide`], which also says how the first line of (43) is reduced to degree zero.
+//! z comes from the reference dynamics of [`ReferenceModel`], which also says how the first line of (43) is reduced to degree zero.
 //! With Δθ = θ̂ − θ the second line of (43) is ṡ = −k s − φᵀΔθ, so V = ½ s² + ½ Δθᵀ Γ⁻¹ Δθ has
 //!
 //! ```text
@@ -24,7 +24,7 @@
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, Following, FollowingWork, positive};
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::LengthError;
 use crate::law::ParameterBounds;
 use crate::plant::{Chain, Terms};
@@ -32,7 +32,7 @@ use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
 #[cfg(doc)]
-use super::Guide;
+use super::ReferenceModel;
 
 /// Control of (33) by feedback linearisation, with θ known or adapted.
 ///
@@ -49,7 +49,7 @@ use super::Guide;
 /// With θ known the loop is ṡ = −k s, whatever the plant is:
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, Linearising};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, Following, ControllerInput, Jets, ReferenceModel, Linearising};
 /// use forwardstep_core::plant::{Chain, Closures, Plant};
 /// use forwardstep_core::reference::{Consensus, Heard};
 ///
@@ -61,13 +61,13 @@ use super::Guide;
 ///     phi: |x: &[f64], phi: &mut [f64]| phi[0] = x[1],
 ///     psi: |x: &[f64]| 2.0 + x[0] * x[0],
 /// };
-/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let guide = ReferenceModel::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
 /// let law = Linearising::new(terms, vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
 /// let x = [0.3, -0.4];
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
+/// let given = ControllerInput { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8], 1)?, target: Jets::NONE };
 /// let state = [0.5, 0.1];
 /// let (mut input, mut d_state, mut shown) = ([0.0], [0.0; 2], [0.0; 4]);
-/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut law.scratch(), given, &state, asked)?;
 ///
 /// let plant = Chain { terms, theta: vec![0.7] };
@@ -178,7 +178,7 @@ impl<T: Terms> Controller for Linearising<T> {
     fn start(
         &self,
         _: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -192,11 +192,11 @@ impl<T: Terms> Controller for Linearising<T> {
     fn evaluate(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
-        let Asked { input, d_state, shown } = asked;
+        let ControllerOutput { input, d_state, shown } = asked;
         let p = self.estimates();
         self.following.lengths(&self.terms, p, [state.len(), d_state.len(), input.len(), shown.len()])?;
         let (x, at) = (given.measured.x, self.at());
@@ -215,7 +215,7 @@ impl<T: Terms> Controller for Linearising<T> {
         Ok(())
     }
 
-    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Singularity> {
         self.following.trouble(self.terms.order(), shown)
     }
 
@@ -225,7 +225,7 @@ impl<T: Terms> Controller for Linearising<T> {
         &self,
         work: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -23,7 +23,6 @@ mod adaptive_backstepping;
 mod attitude;
 mod feedback;
 mod following;
-mod guide;
 mod immersion;
 mod interior;
 mod jets;
@@ -33,6 +32,7 @@ mod model_reference;
 mod passivity_filter;
 mod position_only;
 mod recursion;
+mod reference_model;
 mod stepped;
 mod steps;
 mod steps_in_series;
@@ -44,7 +44,6 @@ pub use adaptive_backstepping::{AdaptiveBackstepping, BacksteppingGains, Backste
 pub use attitude::{AttitudeMeasured, AttitudeTracking};
 pub use feedback::{Feedback, FeedbackInput};
 pub use following::{ChainError, ChainMeasured, Following, FollowingWork};
-pub use guide::{Guide, GuideError, GuideWork, Leads};
 pub use immersion::{Immersion, ImmersionWork};
 pub use jets::{Jet, Jets, JetsBuffer};
 pub use joint_tracking::{JointTracking, JointTrackingWork, MotionMeasured};
@@ -52,6 +51,7 @@ pub use linearising::Linearising;
 pub use model_reference::ModelReference;
 pub use passivity_filter::PassivityFilter;
 pub use position_only::{PositionMeasured, PositionOnly};
+pub use reference_model::{ReferenceModel, ReferenceModelError, ReferenceModelInput, ReferenceModelWork};
 pub(crate) use stepped::Lengths;
 pub use stepped::Stepped;
 pub use task_space::{NullSpace, TaskMeasured, TaskMotionMeasured, TaskSpace, TaskSpaceByVelocity};
@@ -69,7 +69,7 @@ use crate::reference::{Exchange, Heard};
 use crate::signal::{Block, Signal};
 
 /// What a controller has to go by at one instant.
-pub struct Given<'a, C: Controller> {
+pub struct ControllerInput<'a, C: Controller> {
     /// What it may see of its own plant.
     pub measured: C::Measured<'a>,
     /// What it hears of its neighbours.
@@ -79,16 +79,16 @@ pub struct Given<'a, C: Controller> {
     pub target: Jets<'a>,
 }
 
-impl<C: Controller> Clone for Given<'_, C> {
+impl<C: Controller> Clone for ControllerInput<'_, C> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<C: Controller> Copy for Given<'_, C> {}
+impl<C: Controller> Copy for ControllerInput<'_, C> {}
 
 /// Where a controller puts its results.
 #[derive(Debug)]
-pub struct Asked<'a> {
+pub struct ControllerOutput<'a> {
     /// u, as [`Plant::inputs`] has it.
     pub input: &'a mut [f64],
     /// d/dt of the controller's state.
@@ -119,7 +119,7 @@ pub struct Balance {
 
 /// What can go wrong with a controller although all numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Trouble {
+pub enum Singularity {
     /// A quantity by which the law divides comes too close to zero.
     Vanishes {
         /// What it is.
@@ -187,7 +187,7 @@ pub trait Controller: Clone + Send + Sync + 'static {
     fn start(
         &self,
         scratch: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError>;
@@ -199,16 +199,16 @@ pub trait Controller: Clone + Send + Sync + 'static {
     fn evaluate(
         &self,
         scratch: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError>;
 
     /// Brings `state` back to its manifold, as [`Plant::settle`] does.
     fn settle(&self, state: &mut [f64]);
 
     /// What is about to go wrong in this state.
-    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble>;
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Singularity>;
 
     /// V and −V̇ by the proof, of a plant and its controller in continuous time. `shown` is what [`Controller::evaluate`]
     /// left.
@@ -219,7 +219,7 @@ pub trait Controller: Clone + Send + Sync + 'static {
         &self,
         scratch: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError>;

@@ -46,7 +46,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::position_only::PositionMeasured;
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::LengthError;
 use crate::plant::Mechanical;
 use crate::reference::Position;
@@ -63,18 +63,18 @@ use crate::signal::{Block, Signal};
 /// **Deviates from the paper**: it is no law of the paper.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, ModelReference};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, ModelReference};
 /// use forwardstep_core::reference::Heard;
 ///
 /// let law = ModelReference { axes: 1, alpha: [2.0, 3.0], filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5 };
 /// let target = [[0.2, 0.1, -0.3, 0.0, 0.0]];
-/// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: Jets::from(&target) };
+/// let given = ControllerInput { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: Jets::from(&target) };
 /// let (mut state, mut d_state) = (vec![0.0; 4], vec![0.0; 4]);
 /// law.start(&mut (), given, &[], &mut state)?;
 /// // x_f, η and φ after a while.
 /// (state[0], state[1], state[2]) = (0.45, 0.7, -0.4);
 /// let (mut input, mut shown) = (vec![0.0], vec![0.0; 3]);
-/// law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+/// law.evaluate(&mut (), given, &state, ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
 ///
 /// let [y, m_hat, error] = shown[..] else { panic!() };
 /// let phi_0 = -0.3 + 3.0 * 0.1 - 2.0 * error - 3.0 * y;
@@ -139,7 +139,13 @@ impl Controller for ModelReference {
     }
 
     /// `wanted` is not read: there is no z.
-    fn start(&self, (): &mut (), given: Given<'_, Self>, _: &[Vec<f64>], state: &mut [f64]) -> Result<(), LengthError> {
+    fn start(
+        &self,
+        (): &mut (),
+        given: ControllerInput<'_, Self>,
+        _: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", 3 * self.axes + 1, state.len())?;
         LengthError::check("x", self.axes, given.measured.x.len())?;
         state.fill(0.0);
@@ -152,9 +158,9 @@ impl Controller for ModelReference {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let m = self.axes;
         LengthError::check("state", 3 * m + 1, state.len())?;
@@ -190,7 +196,7 @@ impl Controller for ModelReference {
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -198,7 +204,7 @@ impl Controller for ModelReference {
         &self,
         (): &mut (),
         truth: Truth<'_, Self::Plant>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -39,7 +39,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::attitude::{AttitudeMeasured, four, map_transposed, see, three};
-use super::{Asked, Balance, Controller, Given, Jet, Jets, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jet, Jets, Singularity, Truth};
 use crate::attitude::{Desired, angle, cross, difference, dot, normalized, rotate_back, times};
 use crate::plant::{Plant, Spacecraft, Wheels};
 use crate::reference::Position;
@@ -61,7 +61,7 @@ use crate::{LengthError, ResolvedGain};
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, PassivityFilter, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, PassivityFilter, Truth};
 /// use forwardstep_core::plant::{Spacecraft, Wheels};
 /// use forwardstep_core::reference::Heard;
 ///
@@ -79,10 +79,10 @@ use crate::{LengthError, ResolvedGain};
 /// };
 /// let at = |entry: f64| [entry, 0.0, 0.0, 0.0, 0.0];
 /// let target = [at(0.0), at(0.0), at(0.0), at(1.0)];
-/// let given = Given { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: Jets::from(&target) };
+/// let given = ControllerInput { measured: law.see(&state)?, heard: Heard::new(&[0.0], &[0.0; 4], 4)?, target: Jets::from(&target) };
 /// let (mut own, mut d_own, mut input, mut shown) = ([0.0; 4], [0.0; 4], [0.0; 3], [0.0; 11]);
 /// law.start(&mut (), given, &[], &mut own)?;
-/// law.evaluate(&mut (), given, &own, Asked { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
+/// law.evaluate(&mut (), given, &own, ControllerOutput { input: &mut input, d_state: &mut d_own, shown: &mut shown })?;
 /// // The wheel takes what the body is given: u = −τ = k Δq_v.
 /// assert!((input[0] - 1.5 * 0.6).abs() < 1e-12 && input[1].abs() < 1e-12);
 /// let balance = law.balance(&mut (), Truth { plant: &craft, state: &state, external: &[] }, given, &own, &shown)?;
@@ -159,7 +159,13 @@ impl Controller for PassivityFilter {
     }
 
     /// `wanted` is not read: there is no z.
-    fn start(&self, (): &mut (), given: Given<'_, Self>, _: &[Vec<f64>], state: &mut [f64]) -> Result<(), LengthError> {
+    fn start(
+        &self,
+        (): &mut (),
+        given: ControllerInput<'_, Self>,
+        _: &[Vec<f64>],
+        state: &mut [f64],
+    ) -> Result<(), LengthError> {
         LengthError::check("state", STATE, state.len())?;
         self.gains()?;
         let error = difference(normalized(*given.measured.q), desired(given.target)?.q);
@@ -171,9 +177,9 @@ impl Controller for PassivityFilter {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("state", STATE, state.len())?;
         LengthError::check("rate", STATE, asked.d_state.len())?;
@@ -203,7 +209,7 @@ impl Controller for PassivityFilter {
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
@@ -211,7 +217,7 @@ impl Controller for PassivityFilter {
         &self,
         (): &mut (),
         truth: Truth<'_, Self::Plant>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -35,8 +35,8 @@
 
 use alloc::vec::Vec;
 
-use super::guide::{Guide, GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use super::reference_model::{ReferenceModel, ReferenceModelInput, ReferenceModelWork};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jets, Singularity, Truth};
 use crate::LengthError;
 use crate::law::Range;
 use crate::plant::Mechanical;
@@ -64,21 +64,21 @@ pub struct PositionMeasured<'a> {
 /// file; consensus is our own derivation.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, Guide, PositionOnly};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, ReferenceModel, PositionOnly};
 /// use forwardstep_core::reference::{Heard, polynomial};
 ///
 /// let mut alpha = polynomial([1.0, 2.0, 3.0])?;
 /// alpha.pop();
-/// let guide = Guide::Tracking { alpha: alpha.clone() };
+/// let guide = ReferenceModel::Tracking { alpha: alpha.clone() };
 /// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 3.0, estimate_start: 1.5, bounds: None };
 /// let target = [[0.2, 0.1, -0.3, 0.4, 0.0]];
-/// let given = Given { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: Jets::from(&target) };
+/// let given = ControllerInput { measured: law.see(&[0.5, 9.9])?, heard: Heard::new(&[0.0], &[0.0], 1)?, target: Jets::from(&target) };
 /// let mut scratch = law.scratch();
 /// let (mut state, mut d_state) = (vec![0.0; 4], vec![0.0; 4]);
 /// law.start(&mut scratch, given, &[vec![0.7], vec![-0.6]], &mut state)?;
 /// state[2] += 0.05;
 /// let (mut input, mut shown) = (vec![0.0], vec![0.0; 5]);
-/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut scratch, given, &state, asked)?;
 ///
 /// let [z, dz, y, m_hat, error] = shown[..] else { panic!() };
@@ -94,7 +94,7 @@ pub struct PositionOnly {
     /// m.
     pub axes: usize,
     /// Where z leads.
-    pub guide: Guide,
+    pub guide: ReferenceModel,
     /// k, N s/m.
     pub damping: f64,
     /// λ_f, 1/s.
@@ -133,7 +133,7 @@ impl Controller for PositionOnly {
     type Plant = Mechanical<PointMass>;
     type Exchange = Position;
     type Measured<'a> = PositionMeasured<'a>;
-    type Scratch = GuideWork;
+    type Scratch = ReferenceModelWork;
 
     const MEASURES: &'static [&'static str] = &["position"];
     const KNOWS_OFFSETS: bool = false;
@@ -142,7 +142,7 @@ impl Controller for PositionOnly {
         self.guide.target_derivatives()
     }
 
-    fn scratch(&self) -> GuideWork {
+    fn scratch(&self) -> ReferenceModelWork {
         self.guide.work(self.axes)
     }
 
@@ -174,8 +174,8 @@ impl Controller for PositionOnly {
 
     fn start(
         &self,
-        _: &mut GuideWork,
-        given: Given<'_, Self>,
+        _: &mut ReferenceModelWork,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -196,10 +196,10 @@ impl Controller for PositionOnly {
 
     fn evaluate(
         &self,
-        work: &mut GuideWork,
-        given: Given<'_, Self>,
+        work: &mut ReferenceModelWork,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let (m, (p, i)) = (self.axes, self.layout());
         LengthError::check("state", i + 1, state.len())?;
@@ -212,7 +212,7 @@ impl Controller for PositionOnly {
         LengthError::check("x", m, x.len())?;
         let (z, dz) = (&state[..m], &state[m..2 * m]);
         let target = if self.guide.tracks() { given.target } else { Jets::NONE };
-        let leads = Leads { measured: x, state: &state[..p], heard: given.heard, target };
+        let leads = ReferenceModelInput { measured: x, state: &state[..p], heard: given.heard, target };
         self.guide.rate(2, m, leads, work, &mut asked.d_state[..p])?;
         let mu = self.found(state[i], x, z, dz);
         let m_hat = self.bounds.map_or(mu, |range| range.nearest(mu));
@@ -239,15 +239,15 @@ impl Controller for PositionOnly {
 
     fn settle(&self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], _: &[f64]) -> Option<Singularity> {
         None
     }
 
     fn balance(
         &self,
-        _: &mut GuideWork,
+        _: &mut ReferenceModelWork,
         truth: Truth<'_, Self::Plant>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

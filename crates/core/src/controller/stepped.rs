@@ -7,7 +7,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Asked, Controller, Given, Jets, JetsBuffer, Trouble};
+use super::{Controller, ControllerInput, ControllerOutput, Jets, JetsBuffer, Singularity};
 use crate::LengthError;
 use crate::agent::{Inbox, StepError, finite};
 use crate::plant::{Plant, total};
@@ -21,12 +21,12 @@ use crate::reference::{Exchange, Heard};
 ///
 /// ```
 /// use forwardstep_core::agent::Inbox;
-/// use forwardstep_core::controller::{Guide, Jets, PositionOnly, Stepped};
+/// use forwardstep_core::controller::{ReferenceModel, Jets, PositionOnly, Stepped};
 /// use forwardstep_core::plant::Mechanical;
 /// use forwardstep_core::reference::Consensus;
 /// use forwardstep_core::robot::PointMass;
 ///
-/// let guide = Guide::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
+/// let guide = ReferenceModel::Consensus(Consensus::new([(&[1.0, 2.0][..], 0.0)])?);
 /// let law = PositionOnly { axes: 1, guide, damping: 8.0, filter_per_s: 20.0, adaptation: 0.0, estimate_start: 2.0, bounds: None };
 /// let plant = Mechanical { robot: PointMass { dimension: 1 }, theta: vec![2.0] };
 /// // z, ż, p, I of a mass that is held at 1 m and has no neighbours: z̈ = −(κ₀ + κ₁) ż − κ₀ κ₁ z, and p follows.
@@ -71,10 +71,10 @@ impl Held {
         controller: &C,
         target: Jets<'a>,
         later_s: f64,
-    ) -> Result<Given<'a, C>, LengthError> {
+    ) -> Result<ControllerInput<'a, C>, LengthError> {
         let heard = Heard::new(&self.degree, &self.sums, self.sums.len() / C::Exchange::CHANNELS)?;
         let heard = heard.at(self.time_s + later_s);
-        Ok(Given { measured: controller.see(&self.output)?, heard, target })
+        Ok(ControllerInput { measured: controller.see(&self.output)?, heard, target })
     }
 }
 
@@ -148,7 +148,7 @@ impl<C: Controller> Stepped<C> {
         if !*started {
             controller.start(scratch, held.given(controller, target, 0.0)?, wanted, &mut first)?;
         }
-        let asked = Asked { input, d_state: &mut work.k, shown };
+        let asked = ControllerOutput { input, d_state: &mut work.k, shown };
         controller.evaluate(scratch, held.given(controller, target, 0.0)?, &first, asked)?;
         input.fill(0.0);
         shown.fill(0.0);
@@ -156,7 +156,7 @@ impl<C: Controller> Stepped<C> {
     }
 
     /// What is about to go wrong in the state of the last sample.
-    pub(crate) fn trouble(&self) -> Option<Trouble> {
+    pub(crate) fn trouble(&self) -> Option<Singularity> {
         self.controller.trouble(&self.state, &self.shown)
     }
 
@@ -221,7 +221,7 @@ impl<C: Controller> Stepped<C> {
         if !*started {
             controller.start(scratch, held.given(controller, target, 0.0)?, wanted, state)?;
         }
-        let asked = Asked { input, d_state: &mut work.k, shown };
+        let asked = ControllerOutput { input, d_state: &mut work.k, shown };
         controller.evaluate(scratch, held.given(controller, target, 0.0)?, state, asked)?;
         self.started = true;
         self.last_s = Some(now_s);
@@ -239,7 +239,7 @@ impl<C: Controller> Stepped<C> {
                 shift(jet, when * h, moved);
             }
             let given = held.given(controller, target.jets(), when * h)?;
-            controller.evaluate(scratch, given, stage, Asked { input, d_state: k, shown })?;
+            controller.evaluate(scratch, given, stage, ControllerOutput { input, d_state: k, shown })?;
             for i in 0..state.len() {
                 sum[i] += weight * k[i];
                 stage[i] = state[i] + next * h * k[i];

@@ -7,7 +7,7 @@
 //! θ̂ = θ    or    θ̂' = Γ Yᵀ s
 //! ```
 //!
-//! z comes from the reference dynamics of [`Guide`], which are linear and the same for every axis, so the first line of (43) is m times that
+//! z comes from the reference dynamics of [`ReferenceModel`], which are linear and the same for every axis, so the first line of (43) is m times that
 //! of one axis, and its degree and reduction are. With Δθ = θ̂ − θ the second line is ṡ = −k s − Y Δθ + w, so
 //! V = ½ sᵀs + ½ Δθᵀ Γ⁻¹ Δθ has
 //!
@@ -26,8 +26,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::following::{ChainError, ChainMeasured, Following, positive, vanishes};
-use super::guide::{GuideWork, Leads};
-use super::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use super::reference_model::{ReferenceModelInput, ReferenceModelWork};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Jets, Singularity, Truth};
 use crate::LengthError;
 use crate::law::ParameterBounds;
 use crate::linear::{invert, singular_values};
@@ -36,7 +36,7 @@ use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
 #[cfg(doc)]
-use super::Guide;
+use super::ReferenceModel;
 
 /// Control of (33) with several axes by feedback linearisation, with θ known or adapted.
 ///
@@ -49,7 +49,7 @@ use super::Guide;
 /// **Deviates from the paper**: its plants have one axis, and it prints no adaptive design for (33).
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Following, Given, Jets, Guide, VectorLinearising};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, Following, ControllerInput, Jets, ReferenceModel, VectorLinearising};
 /// use forwardstep_core::expression::Expression;
 /// use forwardstep_core::plant::{Plant, VectorChain, VectorFormulas};
 /// use forwardstep_core::reference::{Consensus, Heard};
@@ -58,12 +58,12 @@ use super::Guide;
 /// let (x, number) = (Expression::variable, Expression::number);
 /// let psi = vec![vec![number(1.0), number(1.0)], vec![number(-1.0), number(1.0)]];
 /// let terms = VectorFormulas::new(1, vec![-x(1), number(0.0)], vec![vec![number(0.0)], vec![x(0)]], psi)?;
-/// let guide = Guide::Consensus(Consensus::new([(&[1.0][..], 0.0)])?);
+/// let guide = ReferenceModel::Consensus(Consensus::new([(&[1.0][..], 0.0)])?);
 /// let law = VectorLinearising::new(terms.clone(), vec![0.7], Following { guide, gain_per_s: 5.0, floor: 0.1 })?;
 /// let (x, state) = ([0.3, -0.4], [0.5, 0.1, 0.0, 0.2]);
-/// let given = Given { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8, 0.1], 2)?, target: Jets::NONE };
+/// let given = ControllerInput { measured: law.see(&x)?, heard: Heard::new(&[0.8], &[0.8, 0.1], 2)?, target: Jets::NONE };
 /// let (mut input, mut d_state, mut shown) = ([0.0; 2], [0.0; 4], [0.0; 7]);
-/// let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+/// let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 /// law.evaluate(&mut law.scratch(), given, &state, asked)?;
 ///
 /// let plant = VectorChain { terms, theta: vec![0.7] };
@@ -90,7 +90,7 @@ pub struct VectorLinearising {
 #[derive(Clone, Debug)]
 pub struct VectorLinearisingWork {
     terms: VectorFormulasWork,
-    guide: GuideWork,
+    guide: ReferenceModelWork,
     /// ψ, overwritten twice.
     psi: Vec<f64>,
     inverse: Vec<f64>,
@@ -210,7 +210,7 @@ impl Controller for VectorLinearising {
     fn start(
         &self,
         _: &mut VectorLinearisingWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -235,11 +235,11 @@ impl Controller for VectorLinearising {
     fn evaluate(
         &self,
         work: &mut VectorLinearisingWork,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
-        let Asked { input, d_state, shown } = asked;
+        let ControllerOutput { input, d_state, shown } = asked;
         let (k, m, at, p) = (self.terms.order(), self.terms.axes(), self.at(), self.estimates());
         LengthError::check("state", at + p, state.len())?;
         LengthError::check("rate", at + p, d_state.len())?;
@@ -250,7 +250,7 @@ impl Controller for VectorLinearising {
         let VectorLinearisingWork { terms, guide, psi, inverse, wanted } = work;
 
         let target = if self.following.guide.tracks() { given.target } else { Jets::NONE };
-        let leads = Leads { measured: x, state: &state[..at], heard: given.heard, target };
+        let leads = ReferenceModelInput { measured: x, state: &state[..at], heard: given.heard, target };
         self.following.guide.rate(k, m, leads, guide, &mut d_state[..at])?;
         self.terms.terms(terms, x)?;
 
@@ -288,7 +288,7 @@ impl Controller for VectorLinearising {
     }
 
     /// ψ close to a matrix without an inverse.
-    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Singularity> {
         vanishes(*shown.get(self.at() + self.terms.axes())?, self.following.floor)
     }
 
@@ -298,7 +298,7 @@ impl Controller for VectorLinearising {
         &self,
         work: &mut VectorLinearisingWork,
         truth: Truth<'_, VectorChain>,
-        _: Given<'_, Self>,
+        _: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -11,7 +11,7 @@ use super::safe::Standing;
 use super::sensing::Sensing;
 use crate::LengthError;
 use crate::agent::{Clipped, Inbox, Limiter, StepError, finite, later};
-use crate::controller::{Controller, Jet, JetsBuffer, Lengths, Stepped, Trouble};
+use crate::controller::{Controller, Jet, JetsBuffer, Lengths, Singularity, Stepped};
 use crate::plant::total;
 use crate::reference::Exchange;
 use crate::signal::{Block, Signal};
@@ -106,7 +106,7 @@ impl<C: Controller> SampledFeedback<C> {
         let inbox = Inbox { sums: &inbox.sums[..heard], ..inbox };
         self.asked.copy_from_slice(self.stepped.step(now_s, self.sensing.output(), inbox, self.jets.jets())?);
         self.sensing.accept(now_s)?;
-        if let Some(Trouble::Vanishes { signal, axis, value, floor }) = self.stepped.trouble() {
+        if let Some(Singularity::Vanishes { signal, axis, value, floor }) = self.stepped.trouble() {
             return Err(StepError::Singular { signal, axis, value, floor });
         }
         let passed_s = self.last_s.map(|last_s| (now_s - last_s).max(0.0));

@@ -1,6 +1,6 @@
 //! A plant under its controller, in continuous time, for tests of single systems.
 
-use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jet, Jets, Truth};
+use forwardstep_core::controller::{Balance, Controller, ControllerInput, ControllerOutput, Jet, Jets, Truth};
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::reference::Heard;
 
@@ -41,8 +41,11 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
         let (target, sums) = ((self.target)(0.0), vec![0.0; self.plant.axes()]);
         self.plant.output(&mut self.scratch.0, x, &mut self.output).unwrap();
         let heard = Heard::new(&[0.0], &sums, sums.len()).unwrap();
-        let given =
-            Given { measured: self.controller.see(&self.output).unwrap(), heard, target: Jets::from(&target[..]) };
+        let given = ControllerInput {
+            measured: self.controller.see(&self.output).unwrap(),
+            heard,
+            target: Jets::from(&target[..]),
+        };
         let mut state = x.to_vec();
         state.resize(x.len() + total(&self.controller.states()), 0.0);
         self.controller.start(&mut self.scratch.1, given, wanted, &mut state[x.len()..]).unwrap();
@@ -55,11 +58,14 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
         let (target, sums) = ((self.target)(t), vec![0.0; self.plant.axes()]);
         self.plant.output(&mut self.scratch.0, own, &mut self.output).unwrap();
         let heard = Heard::new(&[0.0], &sums, sums.len()).unwrap();
-        let given =
-            Given { measured: self.controller.see(&self.output).unwrap(), heard, target: Jets::from(&target[..]) };
+        let given = ControllerInput {
+            measured: self.controller.see(&self.output).unwrap(),
+            heard,
+            target: Jets::from(&target[..]),
+        };
         let mut dx = vec![0.0; x.len()];
         let (d_own, d_state) = dx.split_at_mut(own.len());
-        let asked = Asked { input: &mut self.input, d_state, shown: &mut self.shown };
+        let asked = ControllerOutput { input: &mut self.input, d_state, shown: &mut self.shown };
         self.controller.evaluate(&mut self.scratch.1, given, state, asked).unwrap();
         self.plant.limit(own, &mut self.input);
         self.plant.rate(&mut self.scratch.0, own, &self.input, &self.external, d_own).unwrap();
@@ -71,8 +77,11 @@ impl<C: Controller, T: Fn(f64) -> Vec<Jet>> Looped<C, T> {
         let (own, state) = x.split_at(self.split());
         let (target, sums) = ((self.target)(t), vec![0.0; self.plant.axes()]);
         let heard = Heard::new(&[0.0], &sums, sums.len()).unwrap();
-        let given =
-            Given { measured: self.controller.see(&self.output).unwrap(), heard, target: Jets::from(&target[..]) };
+        let given = ControllerInput {
+            measured: self.controller.see(&self.output).unwrap(),
+            heard,
+            target: Jets::from(&target[..]),
+        };
         let truth = Truth { plant: &self.plant, state: own, external: &self.external };
         self.controller.balance(&mut self.scratch.1, truth, given, state, &self.shown).unwrap()
     }

@@ -100,12 +100,13 @@ fn own_an_error_of_the_measured_velocity_is_a_torque_at_once() {
     wrong[6] += 0.01;
     let (mut input, mut d_state, mut shown) = (vec![0.0; 2], vec![0.0; 8], vec![0.0; system.shown.len()]);
     let target = (system.target)(0.0);
-    let given = forwardstep_core::controller::Given {
+    let given = forwardstep_core::controller::ControllerInput {
         measured: law.see(&wrong).unwrap(),
         heard: forwardstep_core::reference::Heard::new(&[0.0], &[0.0; 2], 2).unwrap(),
         target: forwardstep_core::controller::Jets::from(&target[..]),
     };
-    let asked = forwardstep_core::controller::Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+    let asked =
+        forwardstep_core::controller::ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
     law.evaluate(&mut law.scratch(), given, &x[4..], asked).unwrap();
     // Y(q, 0, 0, a) − Y(q, 0, 0, 0) = M̂ a with ϑ̂ in the place of ϑ.
     let [j, _] = jacobian(&law.0.tip, &x[..2], &x[2..4], &x[9..11], &[0.0; 2]);
@@ -140,7 +141,7 @@ fn own_a_pose_is_no_tip_for_a_measured_velocity() {
     let mut work = forwardstep_core::plant::Plant::scratch(&plant);
     forwardstep_core::plant::Plant::output(&plant, &mut work, &[0.1; 12], &mut output).unwrap();
     let target = [[0.0; 5]; 3];
-    let given = forwardstep_core::controller::Given {
+    let given = forwardstep_core::controller::ControllerInput {
         measured: law.see(&output).unwrap(),
         heard: forwardstep_core::reference::Heard::new(&[0.0], &[0.0; 6], 6).unwrap(),
         target: forwardstep_core::controller::Jets::from(&target),

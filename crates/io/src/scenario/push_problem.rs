@@ -102,7 +102,7 @@ pub enum PushProblem {
         axis: String,
     },
     /// Numbers that are not as many as the axes that are held.
-    #[error("`{key}` has {}, but the hand holds {need} of the axes of `{agent}`", entry_count(*.found))]
+    #[error("`{key}` has {}, but the virtual spring holds {need} of the axes of `{agent}`", entry_count(*.found))]
     Held {
         /// The key.
         key: &'static str,
@@ -114,7 +114,7 @@ pub enum PushProblem {
         agent: String,
     },
     /// A hand that leads nowhere.
-    #[error("the hand has no target")]
+    #[error("the virtual spring has no target")]
     NoTarget,
     /// A formula that may be undefined.
     #[error(

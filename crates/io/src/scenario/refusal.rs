@@ -98,7 +98,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
              as are asked for"
         ),
         SetupError::TargetDerivatives { known, .. } => format!("give at most {known} roots"),
-        SetupError::Chain { error: ChainError::Guide(_), .. } => {
+        SetupError::Chain { error: ChainError::ReferenceModel(_), .. } => {
             "an agent may have `reference` with roots of its own".to_owned()
         }
         SetupError::Chain { error: ChainError::Antiderivative { .. }, .. } => {

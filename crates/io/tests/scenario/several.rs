@@ -179,10 +179,10 @@ fn all_mistakes_of_a_table_are_told_at_once() {
     // Many are counted.
     let said = of_table(&format!("from,to\n{}", "arm-1\n".repeat(1000)));
     assert_eq!(said.len(), 25);
-    assert_eq!(said[24], "edges.csv: 976 more mistakes are told when these are mended");
+    assert_eq!(said[24], "edges.csv: 976 more mistakes are reported once these are mended");
     assert_eq!(said[23], "edges.csv:25:1: this line has 1 entry, but there are 2 columns");
     let said = of_table(&format!("from,to\n{}", "arm-1,nobody\n".repeat(25)));
-    assert_eq!(said[24], "edges.csv: 1 more mistake is told when these are mended");
+    assert_eq!(said[24], "edges.csv: 1 more mistake is reported once these are mended");
 }
 
 #[test]

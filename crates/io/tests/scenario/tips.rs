@@ -165,7 +165,7 @@ error_below = 1e-3
 #[rustfmt::skip]
 const PLANAR_CASES: &[Case] = &[
     ("kinematic_gain = [0.3, 0.2]", "end_effector = { link = \"tool0\" }",
-        "test.toml:13:16: the tip of a planar arm is the end of its second link; `end_effector` is for robots from a URDF", "leave `end_effector` out"),
+        "test.toml:13:16: the end-effector of a planar arm is the end of its second link; `end_effector` is for robots from a URDF", "leave `end_effector` out"),
     ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [0.3]",
         "test.toml:13:18: `kinematic_gain` has 1 entry, but `arm` needs 2", ""),
     ("kinematic_gain = [0.3, 0.2]", "kinematic_gain = [[0.3, 0], [0, 0.2]]",

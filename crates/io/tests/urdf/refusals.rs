@@ -396,7 +396,7 @@ fn many_mistakes_are_counted_and_of_a_template_one_is_told() {
     let bad = r#"<link name="arm"><inertial><mass value="x"/><inertia/></inertial></link>"#;
     let said = all(&robot(&[bad; 10]));
     assert_eq!(said.len(), 25, "{said:?}");
-    assert_eq!(said[24], "r.urdf: 55 more mistakes are told when these are mended".trim_start_matches("r.urdf:"));
+    assert_eq!(said[24], "r.urdf: 55 more mistakes are reported once these are mended".trim_start_matches("r.urdf:"));
     let template = robot(&[bad, r#"<link name="${prefix}base"/>"#, bad]);
     assert_eq!(all(&template), ["3:13: `${prefix}base` is xacro, not URDF"]);
 }

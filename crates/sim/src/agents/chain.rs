@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use forwardstep_core::controller::{
-    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Guide, Immersion, Linearising, VectorLinearising,
+    AdaptiveBackstepping, BacksteppingGains, ChainError, Following, Immersion, Linearising, ReferenceModel,
+    VectorLinearising,
 };
 use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
@@ -326,7 +327,7 @@ fn derivatives(assembly: &Assembly<'_>, terms: &Formulas) -> Chain<Formulas> {
 }
 
 /// Where z leads: to a target, or to agreement.
-fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
+fn guide(assembly: &Assembly<'_>) -> Result<ReferenceModel, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
     match assembly.reference().interface().family {
@@ -334,10 +335,10 @@ fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
-            Ok(Guide::Tracking { alpha })
+            Ok(ReferenceModel::Tracking { alpha })
         }
         ReferenceFamily::Consensus => {
-            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
+            Ok(ReferenceModel::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
         }
         ReferenceFamily::Desired | ReferenceFamily::DesiredTarget => {
             assembly.reference().downcast::<Desired>().ok_or_else(|| assembly.wrong_reference())?.guide(own)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use forwardstep_core::controller::{Guide, PositionOnly};
+use forwardstep_core::controller::{PositionOnly, ReferenceModel};
 use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::Mechanical;
 use forwardstep_core::reference::{Consensus, Position, polynomial};
@@ -76,7 +76,7 @@ impl Law for PositionOnlyLaw {
 }
 
 /// Where z leads: to a target, or to agreement.
-fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
+fn guide(assembly: &Assembly<'_>) -> Result<ReferenceModel, SetupError> {
     let own = assembly.agent();
     let roots = |error| SetupError::Roots { agent: own.name.clone(), error };
     match assembly.reference().interface().family {
@@ -85,13 +85,13 @@ fn guide(assembly: &Assembly<'_>) -> Result<Guide, SetupError> {
             let mut alpha = polynomial(&own.roots_per_s).map_err(roots)?;
             // The leading one is not listed.
             alpha.pop();
-            Ok(Guide::Tracking { alpha })
+            Ok(ReferenceModel::Tracking { alpha })
         }
         ReferenceFamily::Consensus if own.roots_per_s.len() < 2 => {
             Err(SetupError::OrderTooLow { agent: own.name.clone(), order: own.roots_per_s.len(), least: 2 })
         }
         ReferenceFamily::Consensus => {
-            Ok(Guide::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
+            Ok(ReferenceModel::Consensus(Consensus::<Position>::new([(&own.roots_per_s, 0.0)]).map_err(roots)?))
         }
         _ => Err(assembly.wrong_reference()),
     }

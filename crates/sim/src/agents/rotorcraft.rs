@@ -16,7 +16,7 @@ pub struct RotorcraftModel {
     pub gravity: f64,
     /// J, kg m².
     pub inertia: Gain,
-    /// Its rotors; without them every thrust and every torque can be had.
+    /// Its rotors; without them every thrust and torque that is asked for can be produced.
     pub rotors: Option<Rotors>,
 }
 

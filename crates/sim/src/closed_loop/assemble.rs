@@ -5,7 +5,7 @@ mod running;
 use std::ops::Range;
 
 use forwardstep_core::agent::Clipped;
-use forwardstep_core::controller::Trouble;
+use forwardstep_core::controller::Singularity;
 use forwardstep_core::plant::total;
 use forwardstep_core::sampled::Recipe;
 
@@ -14,8 +14,8 @@ use super::columns::{Columns, Inputs};
 use super::driven::Driven;
 use super::error::SetupError;
 use super::frictions::{Frictions, is_acted_on};
-use super::guide::Guide;
 use super::injected::Energy;
+use super::leader_block::LeaderBlock;
 use super::members::batches;
 use super::pushes::Pushes;
 use super::recipes::built;
@@ -132,7 +132,7 @@ impl<'a> ClosedLoop<'a> {
         if let Some(leader) = following.and_then(Following::motion) {
             let told = following.filter(|following| following.design == FollowingDesign::Composite);
             let composite = told.map(|following| [following.alpha, following.beta]);
-            let guide = Box::new(Guide::new(leader, composite, placed, setup.time.end_s)?);
+            let guide = Box::new(LeaderBlock::new(leader, composite, placed, setup.time.end_s)?);
             let first = closed_loop.start.len();
             guide.append_start(&setup.agents, &mut closed_loop.start);
             let told = first + guide.message();
@@ -229,7 +229,7 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Who is in trouble in the state `x`, which has just been evaluated.
-    pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+    pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Singularity)> {
         self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
     }
 

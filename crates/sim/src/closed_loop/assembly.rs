@@ -1,6 +1,6 @@
 //! What a law builds its agents with.
 
-use forwardstep_core::controller::{ChainError, Controller, Guide, JointTracking};
+use forwardstep_core::controller::{ChainError, Controller, JointTracking, ReferenceModel};
 use forwardstep_core::law::{ParameterBounds, Range};
 use forwardstep_core::plant::{Mechanical, Plant, total};
 use forwardstep_core::reference::{WrittenIn, polynomial};
@@ -223,8 +223,8 @@ impl<'a> Assembly<'a> {
         let (own, robot) = (self.agent(), model.kernel());
         let Member { law, theta, .. } = members::member(&robot, self)?;
         // One root at least.
-        let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::Guide(error) };
-        let suits = |order: usize| Guide::Tracking { alpha: vec![1.0; order] }.check(1, 1).map_err(wrong);
+        let wrong = |error| SetupError::Chain { agent: own.name.clone(), error: ChainError::ReferenceModel(error) };
+        let suits = |order: usize| ReferenceModel::Tracking { alpha: vec![1.0; order] }.check(1, 1).map_err(wrong);
         let guide = if let Some(desired) = self.reference().downcast::<Desired>() {
             let dynamics = desired.dynamics_of(&own.name)?;
             if dynamics.written() != WrittenIn::Measured {
@@ -233,9 +233,9 @@ impl<'a> Assembly<'a> {
             }
             suits(dynamics.order())?;
             if dynamics.is_linear() {
-                Guide::Tracking { alpha: dynamics.own().to_vec() }
+                ReferenceModel::Tracking { alpha: dynamics.own().to_vec() }
             } else {
-                Guide::Desired(dynamics)
+                ReferenceModel::Desired(dynamics)
             }
         } else {
             suits(own.roots_per_s.len())?;
@@ -243,7 +243,7 @@ impl<'a> Assembly<'a> {
                 polynomial(&own.roots_per_s).map_err(|error| SetupError::Roots { agent: own.name.clone(), error })?;
             // The leading one is not listed.
             alpha.pop();
-            Guide::Tracking { alpha }
+            ReferenceModel::Tracking { alpha }
         };
         let adaptive = own.law.downcast().map(|law: &Adaptive| law.estimate_start.clone());
         let estimate_start = adaptive.unwrap_or_else(|| theta.clone());

@@ -49,7 +49,7 @@ impl SetupError {
             | SetupError::OrderTooLow { agent, .. }
             | SetupError::RootCount { agent, .. }
             | SetupError::TargetDerivatives { agent, .. }
-            | SetupError::Chain { agent, error: ChainError::Guide(_) } => roots(agent),
+            | SetupError::Chain { agent, error: ChainError::ReferenceModel(_) } => roots(agent),
             SetupError::NoManipulability { agent, .. } => own(agent).key("manipulability_gain"),
             SetupError::StartOfReference { agent, .. } => of(agent).key("start.reference"),
             SetupError::CannotLead { .. } => Path::from("leader"),

@@ -8,7 +8,7 @@ use forwardstep_core::robot::{Drives, Stick};
 use super::assemble::Block;
 use super::pushes::Pushes;
 use crate::agents::Evaluator;
-use crate::engine::{Happened, Heard, Port};
+use crate::engine::{EventOutcome, Heard, Port};
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Setup};
 
@@ -109,13 +109,13 @@ impl Frictions {
     pub(super) fn happen(
         &mut self,
         now_s: f64,
-        happened: Happened,
+        happened: EventOutcome,
         pushes: &mut Pushes,
         blocks: &mut [Block],
         x: &[f64],
-    ) -> Happened {
+    ) -> EventOutcome {
         let due = self.next_s() <= now_s;
-        if !due && happened == Happened::Nothing {
+        if !due && happened == EventOutcome::Nothing {
             return happened;
         }
         while self.next_s() <= now_s + ROUNDING * self.period_s {
@@ -141,6 +141,6 @@ impl Frictions {
             debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
             pushes.rub(*agent, stick.torque());
         }
-        happened.max(Happened::Sampled)
+        happened.max(EventOutcome::Sampled)
     }
 }

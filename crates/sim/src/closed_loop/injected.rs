@@ -19,7 +19,7 @@
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{Asked, Balance};
+use forwardstep_core::controller::{Balance, ControllerOutput};
 
 use super::pair::{Lengths, Outside, Pair};
 
@@ -174,7 +174,7 @@ impl Asking<'_> {
     fn asked(&mut self, output: &[f64], own: &[f64], outside: Outside<'_>) -> Result<Answer, LengthError> {
         let Lengths { input, shown, controller, .. } = self.lengths;
         let [mut input, mut shown, mut d_state] = [input, shown, controller].map(|length| vec![0.0; length]);
-        let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+        let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
         self.pair.evaluate(output, outside, own, asked)?;
         Ok(Answer { input, d_state, shown })
     }

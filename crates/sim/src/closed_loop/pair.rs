@@ -2,7 +2,7 @@
 //! what they compute, and everything around them is compiled once.
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use forwardstep_core::controller::{Balance, Controller, ControllerInput, ControllerOutput, Jets, Singularity, Truth};
 use forwardstep_core::plant::{Plant, total};
 use forwardstep_core::reference::{Exchange, Heard};
 use forwardstep_core::sampled::Recipe;
@@ -57,7 +57,7 @@ pub(super) trait Pair {
         output: &[f64],
         outside: Outside<'_>,
         own: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError>;
     /// V and what it loses in the plant's true state, under what acts on it from outside.
     fn balance(
@@ -69,7 +69,7 @@ pub(super) trait Pair {
         shown: &[f64],
     ) -> Result<Balance, LengthError>;
     /// What is wrong although all numbers are finite.
-    fn trouble(&self, own: &[f64], shown: &[f64]) -> Option<Trouble>;
+    fn trouble(&self, own: &[f64], shown: &[f64]) -> Option<Singularity>;
     /// The sampled controller.
     fn recipe(&self) -> Recipe;
 }
@@ -94,10 +94,10 @@ fn given<'g, C: Controller>(
     axes: usize,
     output: &'g [f64],
     outside: Outside<'g>,
-) -> Result<Given<'g, C>, LengthError> {
+) -> Result<ControllerInput<'g, C>, LengthError> {
     let sums = outside.sums.get(..C::Exchange::CHANNELS * axes).unwrap_or(outside.sums);
     let heard = Heard::new(outside.degree, sums, axes)?.at(outside.time_s);
-    Ok(Given { measured: controller.see(output)?, heard, target: outside.jets })
+    Ok(ControllerInput { measured: controller.see(output)?, heard, target: outside.jets })
 }
 
 impl<C: Controller> Pair for Joined<C> {
@@ -165,7 +165,7 @@ impl<C: Controller> Pair for Joined<C> {
         output: &[f64],
         outside: Outside<'_>,
         own: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let given = given(&self.controller, self.plant.axes(), output, outside)?;
         self.controller.evaluate(&mut self.scratch, given, own, asked)
@@ -184,7 +184,7 @@ impl<C: Controller> Pair for Joined<C> {
         self.controller.balance(&mut self.scratch, truth, given, own, shown)
     }
 
-    fn trouble(&self, own: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, own: &[f64], shown: &[f64]) -> Option<Singularity> {
         self.controller.trouble(own, shown)
     }
 

@@ -15,7 +15,7 @@
 use std::ops::Range;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::Trouble;
+use forwardstep_core::controller::Singularity;
 use forwardstep_core::reference::{Choice, Derived, Measured, ReferenceOut, Sliding};
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_core::sampled::{Recipe, Sampled, StartState};
@@ -343,7 +343,7 @@ impl Columns for Population {
     fn settle(&mut self, _: &mut [f64]) {}
 
     // (6)–(7) are defined everywhere.
-    fn trouble(&self, _: &[f64]) -> Option<(usize, Trouble)> {
+    fn trouble(&self, _: &[f64]) -> Option<(usize, Singularity)> {
         None
     }
 

@@ -10,7 +10,7 @@ use forwardstep_core::signal::Block as Signals;
 
 use super::assemble::Block;
 use super::frictions::is_acted_on;
-use crate::engine::{Happened, Port};
+use crate::engine::{EventOutcome, Port};
 use crate::push::{Between, Course, Effect, Grip, Push};
 use crate::setup::{AgentSetup, Setup};
 use crate::system::Attachments;
@@ -120,9 +120,9 @@ impl Pushes {
     }
 
     /// Lets everything happen that is due until `until_s`.
-    pub(crate) fn happen(&mut self, until_s: f64) -> Happened {
+    pub(crate) fn happen(&mut self, until_s: f64) -> EventOutcome {
         let actions = self.people.iter_mut().flat_map(|placed| &mut placed.pushed.actions);
-        actions.map(|action| action.pass(until_s)).max().unwrap_or(Happened::Nothing)
+        actions.map(|action| action.pass(until_s)).max().unwrap_or(EventOutcome::Nothing)
     }
 }
 
@@ -260,26 +260,27 @@ impl Action {
         }
     }
 
-    fn pass(&mut self, until_s: f64) -> Happened {
-        let mut happened = Happened::Nothing;
+    fn pass(&mut self, until_s: f64) -> EventOutcome {
+        let mut happened = EventOutcome::Nothing;
         while self.next_event_s() <= until_s {
             let ends = self.span_s[1] <= until_s;
             let (phase, what) = match (self.phase, self.push.course()) {
                 (Phase::Waiting, Course::Table(table)) => {
                     let begun = table.times_s.partition_point(|t_s| *t_s <= self.span_s[0]);
-                    (Phase::Acting { piece: begun.clamp(1, table.times_s.len() - 1) - 1 }, Happened::Jumped)
+                    (Phase::Acting { piece: begun.clamp(1, table.times_s.len() - 1) - 1 }, EventOutcome::Jumped)
                 }
-                (Phase::Waiting, Course::Each(_)) => (Phase::Acting { piece: 0 }, Happened::Jumped),
+                (Phase::Waiting, Course::Each(_)) => (Phase::Acting { piece: 0 }, EventOutcome::Jumped),
                 (Phase::Acting { piece }, Course::Table(table)) if !ends => {
                     // A polygon has a kink where rows meet: the rate is continuous there, and steps may stay long.
-                    let what = if table.between == Between::Linear { Happened::Sampled } else { Happened::Jumped };
+                    let what =
+                        if table.between == Between::Linear { EventOutcome::Sampled } else { EventOutcome::Jumped };
                     (Phase::Acting { piece: piece + 1 }, what)
                 }
                 (Phase::Acting { piece }, Course::Each(_)) if !ends => {
                     self.kinks_s.pop();
-                    (Phase::Acting { piece }, Happened::Sampled)
+                    (Phase::Acting { piece }, EventOutcome::Sampled)
                 }
-                _ => (Phase::Over, Happened::Jumped),
+                _ => (Phase::Over, EventOutcome::Jumped),
             };
             self.phase = phase;
             happened = happened.max(what);

@@ -1,7 +1,7 @@
 //! The instants at which digital controllers sample, and at which their torques change.
 
 use super::assemble::Block;
-use crate::engine::{Happened, Heard, Port, Radio, Refuted};
+use crate::engine::{EventOutcome, Heard, Port, Refuted, SampledChannel};
 use crate::recording::SampleTaken;
 use crate::setup::{Control, Setup};
 
@@ -9,7 +9,7 @@ use crate::setup::{Control, Setup};
 pub(crate) struct Sampling<'a> {
     sample_hz: f64,
     computation_delay_s: f64,
-    radio: Radio<'a>,
+    radio: SampledChannel<'a>,
     heard: Heard,
     /// The sample to come.
     sample: u64,
@@ -26,7 +26,7 @@ impl<'a> Sampling<'a> {
             sample_hz: control.sample_hz,
             computation_delay_s: control.computation_delay_s,
             heard: Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] },
-            radio: Radio::new(
+            radio: SampledChannel::new(
                 &setup.network,
                 setup.time.end_s,
                 [control.sample_hz, control.failures.message_timeout_s.unwrap_or(f64::INFINITY)],
@@ -71,12 +71,12 @@ impl<'a> Sampling<'a> {
     }
 
     /// Everything that is due until `until_s`: torques that were on their way first, then the sample.
-    pub(super) fn happen(&mut self, until_s: f64, blocks: &mut [Block], x: &mut [f64]) -> Happened {
-        let mut happened = Happened::Nothing;
+    pub(super) fn happen(&mut self, until_s: f64, blocks: &mut [Block], x: &mut [f64]) -> EventOutcome {
+        let mut happened = EventOutcome::Nothing;
         if self.apply_s <= until_s {
             self.apply_s = f64::INFINITY;
             blocks.iter_mut().for_each(|block| block.columns.apply());
-            happened = Happened::Sampled;
+            happened = EventOutcome::Sampled;
         }
         let now_s = self.sample_s();
         if now_s <= until_s {
@@ -87,7 +87,7 @@ impl<'a> Sampling<'a> {
                 self.apply_s = f64::INFINITY;
                 blocks.iter_mut().for_each(|block| block.columns.apply());
             }
-            happened = Happened::Sampled;
+            happened = EventOutcome::Sampled;
         }
         happened
     }

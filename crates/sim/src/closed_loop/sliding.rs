@@ -19,7 +19,7 @@
 use forwardstep_core::reference::{Choice, Sliding, saturated};
 
 use super::assemble::Block;
-use crate::engine::{Happened, Heard};
+use crate::engine::{EventOutcome, Heard};
 use crate::graph::Weight;
 use crate::network::Network;
 use crate::schedule::{Segment, Segments};
@@ -153,7 +153,7 @@ impl<'a> Slider<'a> {
         external: Option<&[f64]>,
         blocks: &mut [Block],
         x: &mut [f64],
-    ) -> Happened {
+    ) -> EventOutcome {
         while self.segment.end_s <= until_s {
             match self.segments.next() {
                 Some(segment) => self.segment = segment,
@@ -163,7 +163,7 @@ impl<'a> Slider<'a> {
         }
         let now_s = self.set as f64 * self.period_s;
         if self.is_layer().is_some() || now_s > until_s {
-            return Happened::Nothing;
+            return EventOutcome::Nothing;
         }
         self.set += 1;
         if self.sliding.told() > 0 {
@@ -187,7 +187,7 @@ impl<'a> Slider<'a> {
                 x[block.state.clone()][range].copy_from_slice(&self.selection[block.columns_range(self.axes)]);
             }
         }
-        Happened::Sampled
+        EventOutcome::Sampled
     }
 
     /// The sign as a function of the instant: −γ ς is added to the rates `dx` of the state `x`.

@@ -15,7 +15,7 @@
 mod block;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::{Asked, Balance, JetsBuffer};
+use forwardstep_core::controller::{Balance, ControllerOutput, JetsBuffer};
 use forwardstep_core::plant::total;
 use forwardstep_core::signal::Block;
 
@@ -151,7 +151,7 @@ impl Solo {
         } else {
             let own = &x[plant..self.layout.controller_end()];
             let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
-            self.pair.evaluate(output, outside, own, Asked { input, d_state: d_controller, shown })?;
+            self.pair.evaluate(output, outside, own, ControllerOutput { input, d_state: d_controller, shown })?;
         }
         let (first, count) = self.layout.torque;
         for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {

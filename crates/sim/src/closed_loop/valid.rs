@@ -6,7 +6,7 @@ use super::assembly::length;
 use super::error::SetupError;
 use super::frictions::is_acted_on;
 use super::unused;
-use crate::engine::{Integrator, Radio};
+use crate::engine::{Integrator, SampledChannel};
 use crate::quantity::{Path, each, finite, not_negative, positive};
 use crate::reference::ReferenceInterface;
 use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, Setup};
@@ -73,7 +73,7 @@ pub(super) fn message_len(setup: &Setup) -> usize {
 fn check_memory(setup: &Setup) -> Result<(), SetupError> {
     let numbers = setup.network.agents.saturating_mul(message_len(setup));
     let need_bytes = match &setup.control {
-        Some(control) => Radio::bytes(&setup.network, setup.time.end_s, control.sample_hz, numbers),
+        Some(control) => SampledChannel::bytes(&setup.network, setup.time.end_s, control.sample_hz, numbers),
         None => Integrator::least_bytes(numbers),
     };
     let budget_bytes = setup.solver.memory_budget_bytes;

@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::packets::{Drawn, Kind, stream};
-use super::{Arrivals, DelayFunction, DelayPiece, Known};
+use super::{Arrivals, DelayFunction, DelayPiece, HoldLog, Known};
 use crate::quantity::{Path, QuantityError, at_most, each, not_negative, positive};
 
 /// A delay that takes a new value, each equally likely, after times of which each is equally likely.
@@ -12,9 +12,7 @@ pub struct RandomHold {
     /// Least and largest value, s.
     value_s: [f64; 2],
     hold_s: [f64; 2],
-    until_s: f64,
-    times_s: Vec<f64>,
-    values_s: Vec<f64>,
+    drawn: HoldLog,
 }
 
 impl RandomHold {
@@ -54,7 +52,7 @@ impl RandomHold {
             }
             t_s = next;
         }
-        Ok(RandomHold { value_s, hold_s, until_s, times_s, values_s })
+        Ok(RandomHold { value_s, hold_s, drawn: HoldLog { times_s, values_s, until_s } })
     }
 
     /// Checks what [`draw`](Self::draw) is given.
@@ -80,21 +78,17 @@ impl RandomHold {
 
     /// When each value begins, s.
     pub fn times_s(&self) -> &[f64] {
-        &self.times_s
+        &self.drawn.times_s
     }
 
     /// The values, s.
     pub fn values_s(&self) -> &[f64] {
-        &self.values_s
+        &self.drawn.values_s
     }
 
     /// Until when they are drawn, s.
     pub fn until_s(&self) -> f64 {
-        self.until_s
-    }
-
-    fn clamped(&self, index: u64) -> usize {
-        (index as usize).min(self.times_s.len() - 1)
+        self.drawn.until_s
     }
 }
 
@@ -109,20 +103,19 @@ impl DelayFunction for RandomHold {
     }
 
     fn piece(&self, index: u64) -> DelayPiece {
-        let k = self.clamped(index);
-        DelayPiece::new(index, self.times_s[k], self.times_s.get(k + 1).copied().unwrap_or(f64::INFINITY))
+        self.drawn.piece(index)
     }
 
-    fn value(&self, piece: &DelayPiece, _: f64) -> f64 {
-        self.values_s[self.clamped(piece.index)]
+    fn value(&self, piece: &DelayPiece, t_s: f64) -> f64 {
+        self.drawn.value(piece, t_s)
     }
 
     /// Its values are drawn between two bounds, for ever.
     fn known(&self) -> Known {
-        Known { until_s: Some(self.until_s), ..Known::by_rule(self.value_s) }
+        Known { until_s: Some(self.drawn.until_s), ..Known::by_rule(self.value_s) }
     }
 
     fn arrivals(&self, search: &mut Arrivals<'_>) {
-        search.monotone();
+        self.drawn.arrivals(search);
     }
 }

@@ -2,11 +2,11 @@
 
 mod failure;
 
+use super::delayed_inputs::{DelayedInputs, Heard, Needs, Port};
 use super::forcing::Forcing;
-use super::hearing::{Heard, Hearing, Needs, Port};
 use super::history::History;
 use super::kernels::{PieceSource, combine, error_norm, make_piece, piece_gap};
-use super::system::{DelaySystem, Happened, Step};
+use super::system::{DelaySystem, EventOutcome, Step};
 use super::tableau::{CLASSICAL, DORMAND_PRINCE, Tableau};
 use super::timeline::{Passed, Timeline, merge_until};
 use crate::network::Network;
@@ -44,7 +44,7 @@ const COEFFICIENTS: usize = 5;
 pub(crate) struct Integrator<'a> {
     network: &'a Network,
     timeline: Timeline<'a>,
-    hearing: Hearing,
+    hearing: DelayedInputs,
     history: History,
     heard: Heard,
     tableau: &'static Tableau,
@@ -98,7 +98,7 @@ impl<'a> Integrator<'a> {
         let generations = if rtol < SHARE_PER_STEP * SECOND_GENERATION_BELOW || fixed_step_s.is_some() { 2 } else { 1 };
         let timeline = Timeline::new(network, end_s, generations);
         let mut heard = Heard { degree: vec![0.0; ports.len()], sums: vec![0.0; ports.len() * entries] };
-        let mut hearing = Hearing::new(ports, entries, &x, network.coupling);
+        let mut hearing = DelayedInputs::new(ports, entries, &x, network.coupling);
         hearing.rewire(&timeline, network.schedule.graph(timeline.graph()), &mut heard);
         let width = COEFFICIENTS * hearing.width();
         let n = x.len();
@@ -132,7 +132,7 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// What everybody sent before t = 0; see [`Hearing::told_before`].
+    /// What everybody sent before t = 0; see [`DelayedInputs::told_before`].
     pub(crate) fn told_before(&mut self, messages: &[Vec<f64>]) {
         self.hearing.told_before(messages);
     }
@@ -255,9 +255,9 @@ impl<'a> Integrator<'a> {
         let until_s = merge_until(t);
         if system.next_event_s() <= until_s {
             match system.happen(until_s, &mut self.x0) {
-                Happened::Nothing => {}
-                Happened::Sampled => self.stale = true,
-                Happened::Jumped => {
+                EventOutcome::Nothing => {}
+                EventOutcome::Sampled => self.stale = true,
+                EventOutcome::Jumped => {
                     self.restart();
                     self.timeline.send_images(t, 0);
                 }
@@ -445,7 +445,7 @@ fn piece_source<'a>(
     x1: &'a [f64],
     k: &'a [Vec<f64>; 7],
     h: f64,
-    hearing: &'a Hearing,
+    hearing: &'a DelayedInputs,
 ) -> (PieceSource<'a>, &'a [(usize, usize, usize)], usize) {
     let mut dense = [0.0; 7];
     for (dense, d) in dense.iter_mut().zip(tableau.dense) {

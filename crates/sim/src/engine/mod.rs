@@ -13,20 +13,20 @@
 //! - `forcing`: what enters as a function of time, and how long a step may be that sees it.
 //! - `radio`: what is sent and heard at the samples of digital controllers.
 
+mod delayed_inputs;
 mod forcing;
-mod hearing;
 mod history;
 mod integrator;
 mod kernels;
-mod radio;
+mod sampled_channel;
 mod stiffness;
 mod system;
 mod tableau;
 mod timeline;
 
+pub(crate) use delayed_inputs::{Heard, Port, Refuted};
 pub(crate) use forcing::{Forcing, Shape};
-pub(crate) use hearing::{Heard, Port, Refuted};
 pub(crate) use integrator::{Failure, FailureCause, Integrator};
-pub(crate) use radio::Radio;
-pub(crate) use system::{DelaySystem, Happened, Step};
+pub(crate) use sampled_channel::SampledChannel;
+pub(crate) use system::{DelaySystem, EventOutcome, Step};
 pub(crate) use timeline::Passed;

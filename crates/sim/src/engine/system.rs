@@ -1,6 +1,6 @@
 //! What is integrated: a right-hand side that knows the past only through what is heard.
 
-use super::hearing::Heard;
+use super::delayed_inputs::Heard;
 
 /// A right-hand side that knows the past only through what is heard.
 pub(crate) trait DelaySystem {
@@ -18,15 +18,15 @@ pub(crate) trait DelaySystem {
     }
 
     /// Lets everything happen that is due until `until_s`, a rounding error after the instant at hand; may change `x`.
-    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
+    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> EventOutcome {
         let _ = (until_s, x);
-        Happened::Nothing
+        EventOutcome::Nothing
     }
 }
 
 /// What an event did to the right-hand side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Happened {
+pub(crate) enum EventOutcome {
     /// It goes on as before.
     Nothing,
     /// Held inputs changed. What follows is as smooth as what was before, so steps stay as long as they were.

@@ -1,6 +1,6 @@
 //! Desired dynamics that a user writes down: what x should do, of any order (Section IV-B).
 
-use forwardstep_core::controller::Guide;
+use forwardstep_core::controller::ReferenceModel;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{
     self, DesiredDynamics, DesiredError, Position, PositionVelocity, RootSet, WrittenIn, polynomial,
@@ -140,8 +140,8 @@ impl Desired {
     ///
     /// # Errors
     /// [`SetupError`] when they have no meaning.
-    pub(crate) fn guide(&self, agent: &AgentSetup) -> Result<Guide, SetupError> {
-        Ok(Guide::Desired(self.dynamics_of(&agent.name)?))
+    pub(crate) fn guide(&self, agent: &AgentSetup) -> Result<ReferenceModel, SetupError> {
+        Ok(ReferenceModel::Desired(self.dynamics_of(&agent.name)?))
     }
 }
 

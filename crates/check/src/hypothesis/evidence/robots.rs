@@ -60,7 +60,7 @@ pub enum RobotEvidence {
         /// Whether all places in between can be reached, or it is only known that no others can.
         exact: bool,
     },
-    /// A target is where the tip cannot be.
+    /// A target is where the end-effector cannot be.
     OutOfReach {
         /// On which side.
         side: ReachSide,

@@ -57,7 +57,7 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
             );
             if *exact {
                 format!(
-                    "{target}; the tip can be {}",
+                    "{target}; the end-effector can be {}",
                     between(rounded_up(reach.least.max(0.0)), rounded_down(reach.most))
                 )
             } else {
@@ -75,7 +75,7 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
             let at = format!("at t = {} s", as_it_is(*t_s));
             match side {
                 ReachSide::Beyond => format!(
-                    "{at} it is {} m away, and the tip cannot be farther than {} m",
+                    "{at} it is {} m away, and the end-effector cannot be farther than {} m",
                     above(*distance_m, *limit_m),
                     limit(*limit_m)
                 ),
@@ -83,7 +83,7 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
                     format!("{at} it is where the arm folds up entirely, and its Jacobian is singular")
                 }
                 ReachSide::Inside => format!(
-                    "{at} it is {} m away, and the tip cannot be closer than {} m without a singular Jacobian",
+                    "{at} it is {} m away, and the end-effector cannot be closer than {} m without a singular Jacobian",
                     bound_below(*distance_m, *limit_m),
                     limit(*limit_m)
                 ),
@@ -92,12 +92,12 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
         RobotEvidence::ReachNotShown { seen, reach } => {
             if let Some(edge) = edge(seen, reach) {
                 return format!(
-                    "it comes to {} m, up to rounding the edge of what the tip can reach, where its Jacobian is singular",
+                    "it comes to {} m, up to rounding the edge of what the end-effector can reach, where its Jacobian is singular",
                     limit(edge)
                 );
             }
             format!(
-                "it was seen {} away, but neither is that shown to be so for all time, nor was it found to leave what the tip can \
+                "it was seen {} away, but neither is that shown to be so for all time, nor was it found to leave what the end-effector can \
                  reach, {}",
                 between(above(seen.least, reach.least), bound_below(seen.most, reach.most)),
                 between(rounded(reach.least.max(0.0)), rounded(reach.most))

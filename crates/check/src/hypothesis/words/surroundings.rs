@@ -64,7 +64,7 @@ fn pushes(pushed: &[Named], [torques, others, hands]: [&[Named]; 3], last_end_s:
     }
     if !hands.is_empty() {
         because.push(format!(
-            "a hand never lets go of {}: while its target stands still it takes energy out of the motion, but the proof counts \
+            "a virtual spring never lets go of {}: while its target stands still it takes energy out of the motion, but the proof counts \
              the power of torques with s and not with dq",
             names(hands)
         ));

@@ -117,7 +117,7 @@ pub enum NoReferenceGains {
     )]
     Stays,
     /// The setup has no meaning, or numbers that cannot be reckoned with.
-    #[error("the reference cannot be reckoned with in numbers")]
+    #[error("the gains of the reference overflow double precision")]
     Unclear,
 }
 

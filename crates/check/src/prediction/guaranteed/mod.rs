@@ -83,7 +83,7 @@ pub enum NoGuaranteedRate {
     #[error("there are no two agents to compare")]
     Agents,
     /// The horizon is no time.
-    #[error("the horizon of {end_s} s is no time")]
+    #[error("the horizon must be positive and finite, but is {end_s} s")]
     Horizon {
         /// It, s.
         end_s: f64,

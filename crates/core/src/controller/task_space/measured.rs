@@ -41,7 +41,7 @@ use core::mem;
 use super::tip::TaskWork;
 use super::{TaskMeasured, TaskSpace};
 use crate::LengthError;
-use crate::controller::{Asked, Balance, Controller, Given, Jets, Trouble, Truth};
+use crate::controller::{Balance, Controller, ControllerInput, ControllerOutput, Jets, Singularity, Truth};
 use crate::law::SlotineLiOutput;
 use crate::plant::WatchedTaskArm;
 use crate::reference::Position;
@@ -70,7 +70,7 @@ pub struct TaskMotionMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, TaskSpace, TaskSpaceByVelocity, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, Balance, Controller, ControllerInput, Jets, TaskSpace, TaskSpaceByVelocity, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant, TaskArm, WatchedTaskArm};
 /// use forwardstep_core::reference::Heard;
@@ -105,7 +105,7 @@ pub struct TaskMotionMeasured<'a> {
 ///     let mut output = [0.0; 8];
 ///     plant.output(&mut plant.scratch(), motion, &mut output)?;
 ///     let moved: Vec<[f64; 5]> = target.iter().map(|p| [p[0] + h * p[1], p[1] + h * p[2], p[2], 0.0, 0.0]).collect();
-///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&moved[..]) };
+///     let given = ControllerInput { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&moved[..]) };
 ///     let mut state = state.to_vec();
 ///     if state.is_empty() {
 ///         state.resize(size, 0.0);
@@ -113,7 +113,7 @@ pub struct TaskMotionMeasured<'a> {
 ///     }
 ///     let mut scratch = law.scratch();
 ///     let (mut input, mut d_state, mut shown, mut rate) = ([0.0; 2], vec![0.0; size], vec![0.0; shown_size], [0.0; 4]);
-///     law.evaluate(&mut scratch, given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+///     law.evaluate(&mut scratch, given, &state, ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
 ///     plant.rate(&mut plant.scratch(), motion, &input, &[], &mut rate)?;
 ///     let balance = law.balance(&mut scratch, Truth { plant: &plant, state: motion, external: &[] }, given, &state, &shown)?;
 ///     let step = |x: &[f64], dx: &[f64]| x.iter().zip(dx).map(|(x, dx)| x + 1e-7 * dx).collect();
@@ -229,7 +229,7 @@ where
     fn start(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         _: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -245,9 +245,9 @@ where
     fn evaluate(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let (law, n, l) = (&self.0, self.0.tip.joints(), self.layout());
         LengthError::check("state", l.end, state.len())?;
@@ -274,7 +274,7 @@ where
         Ok(())
     }
 
-    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Singularity> {
         let (n, l) = (self.0.tip.joints(), self.layout());
         self.0.vanishing(*state.get(l.determinant)?, *shown.get(l.determinant + 3 * n)?)
     }
@@ -285,7 +285,7 @@ where
         &self,
         work: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -47,7 +47,7 @@ pub use measured::{TaskMotionMeasured, TaskSpaceByVelocity};
 pub use null_space::NullSpace;
 use tip::TaskWork;
 
-use super::{Asked, Balance, Controller, Given, Trouble, Truth};
+use super::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::law::{ParameterBounds, SlotineLi, SlotineLiOutput};
 use crate::plant::TaskArm;
 use crate::reference::Position;
@@ -88,7 +88,7 @@ pub struct TaskMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Balance, Controller, Given, Jets, TaskSpace, Truth};
+/// use forwardstep_core::controller::{ControllerOutput, Balance, Controller, ControllerInput, Jets, TaskSpace, Truth};
 /// use forwardstep_core::law::SlotineLi;
 /// use forwardstep_core::plant::{Mechanical, Plant, TaskArm};
 /// use forwardstep_core::reference::Heard;
@@ -121,7 +121,7 @@ pub struct TaskMeasured<'a> {
 /// let after = |motion: &[f64], state: &[f64], h: f64| -> Result<(Balance, Vec<f64>, Vec<f64>), Box<dyn std::error::Error>> {
 ///     let mut output = [0.0; 6];
 ///     plant.output(&mut plant.scratch(), motion, &mut output)?;
-///     let given = Given { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&target) };
+///     let given = ControllerInput { measured: law.see(&output)?, heard: Heard::new(&[0.0], &[0.0; 2], 2)?, target: Jets::from(&target) };
 ///     let mut state = state.to_vec();
 ///     if state.is_empty() {
 ///         state.resize(size, 0.0);
@@ -129,7 +129,7 @@ pub struct TaskMeasured<'a> {
 ///     }
 ///     let mut scratch = law.scratch();
 ///     let (mut input, mut d_state, mut shown, mut rate) = ([0.0; 2], vec![0.0; size], vec![0.0; shown_size], [0.0; 4]);
-///     let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+///     let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
 ///     law.evaluate(&mut scratch, given, &state, asked)?;
 ///     plant.rate(&mut plant.scratch(), motion, &input, &[], &mut rate)?;
 ///     let truth = Truth { plant: &plant, state: motion, external: &[] };
@@ -241,7 +241,7 @@ where
     fn start(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -271,9 +271,9 @@ where
     fn evaluate(
         &self,
         work: &mut Self::Scratch,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         let (m, l) = (self.tip.joints(), self.layout());
         LengthError::check("state", l.end, state.len())?;
@@ -312,7 +312,7 @@ where
         Ok(())
     }
 
-    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, state: &[f64], shown: &[f64]) -> Option<Singularity> {
         let l = self.layout();
         self.vanishing(*state.get(l.determinant)?, *shown.get(l.determinant + 2 * self.tip.joints())?)
     }
@@ -323,7 +323,7 @@ where
         &self,
         work: &mut Self::Scratch,
         truth: Truth<'_, Self::Plant>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::null_space::Free;
 use super::{TaskMeasured, TaskSpace};
 use crate::attitude::{IDENTITY, Quaternion};
-use crate::controller::{Jets, Trouble};
+use crate::controller::{Jets, Singularity};
 use crate::law::ParameterBounds;
 use crate::linear::{invert, singular_values};
 use crate::robot::{Lagrangian, Posture, TipKinematics};
@@ -80,11 +80,11 @@ where
     }
 
     /// What is wrong where Ĵ comes too close to singular, by what says so at the start and now.
-    pub(super) fn vanishing(&self, start: f64, value: f64) -> Option<Trouble> {
+    pub(super) fn vanishing(&self, start: f64, value: f64) -> Option<Singularity> {
         // A change of sign is below the floor too, and a start at zero is there at once.
         let floor = self.determinant_floor * start;
         let vanishes = if start < 0.0 { value >= floor } else { value <= floor };
-        vanishes.then_some(Trouble::Vanishes { signal: self.regularity(), axis: 0, value, floor })
+        vanishes.then_some(Singularity::Vanishes { signal: self.regularity(), axis: 0, value, floor })
     }
 
     pub(super) fn is_redundant(&self) -> bool {

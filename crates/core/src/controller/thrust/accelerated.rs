@@ -40,7 +40,7 @@ use alloc::vec::Vec;
 use super::{Floor, Yaw, backward, begin_reference, check_target, driving, learnt};
 use crate::LengthError;
 use crate::attitude::dot;
-use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::controller::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::law::Range;
 use crate::plant::{AcceleratedVehicle, VehicleState};
 use crate::reference::{Consensus, Measured, Position, Reference, ReferenceOut, RootSet, RootsError};
@@ -70,7 +70,7 @@ pub struct AccelerationMeasured<'a> {
 /// Gravity tells the mass: where all agree at rest, too much of it lets the estimate fall once the vehicle rises.
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, ThrustByAcceleration};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, ThrustByAcceleration};
 /// use forwardstep_core::plant::{AcceleratedVehicle, Plant, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
@@ -82,10 +82,10 @@ pub struct AccelerationMeasured<'a> {
 ///     let mut output = [0.0; 14];
 ///     plant.output(&mut (), &at_rest, &mut output)?;
 ///     let heard = Heard::new(&[1.0], &at_rest[..3], 3)?;
-///     let given = Given { measured: law.see(&output)?, heard, target: Jets::NONE };
+///     let given = ControllerInput { measured: law.see(&output)?, heard, target: Jets::NONE };
 ///     let (mut state, mut d_state, mut shown) = ([0.0; 8], [0.0; 8], [0.0; 14]);
 ///     law.start(&mut (), given, &[], &mut state)?;
-///     law.evaluate(&mut (), given, &state, Asked { input: &mut [0.0; 4], d_state: &mut d_state, shown: &mut shown })?;
+///     law.evaluate(&mut (), given, &state, ControllerOutput { input: &mut [0.0; 4], d_state: &mut d_state, shown: &mut shown })?;
 ///     // ẍ₃ = g (1 − m̂/m) and w₃ = −α* g
 ///     assert!((d_state[7] - gamma_star * alpha_star * 9.81 * 9.81 * (1.0 - believed / mass)).abs() < 1e-9);
 ///     assert_eq!(d_state[7].partial_cmp(&0.0), sign.partial_cmp(&0.0));
@@ -145,7 +145,7 @@ impl ThrustByAcceleration {
         })
     }
 
-    fn errors(&self, given: Given<'_, Self>, state: &[f64]) -> Result<Errors, LengthError> {
+    fn errors(&self, given: ControllerInput<'_, Self>, state: &[f64]) -> Result<Errors, LengthError> {
         LengthError::check("state", STATE, state.len())?;
         check_target(given.target)?;
         let AccelerationMeasured { at, ddx, .. } = given.measured;
@@ -214,7 +214,7 @@ impl Controller for ThrustByAcceleration {
     fn start(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -228,9 +228,9 @@ impl Controller for ThrustByAcceleration {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("input", 4, asked.input.len())?;
         LengthError::check("rate", STATE, asked.d_state.len())?;
@@ -257,7 +257,7 @@ impl Controller for ThrustByAcceleration {
         Ok(())
     }
 
-    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, _: &[f64], shown: &[f64]) -> Option<Singularity> {
         self.floor.trouble(*shown.get(SHOWN - 1)?)
     }
 
@@ -267,7 +267,7 @@ impl Controller for ThrustByAcceleration {
         &self,
         (): &mut (),
         truth: Truth<'_, AcceleratedVehicle>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {

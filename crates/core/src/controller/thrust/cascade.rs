@@ -20,7 +20,7 @@ use alloc::vec::Vec;
 use super::Thrust;
 use crate::LengthError;
 use crate::attitude::{cross, rotate, times};
-use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::controller::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::plant::{Rotorcraft, VehicleState};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
@@ -56,7 +56,7 @@ pub struct RotorcraftMeasured<'a> {
 ///
 /// ```
 /// use forwardstep_core::Gain;
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, RateLoop, Thrust, ThrustCascade, ThrustDesign};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, RateLoop, Thrust, ThrustCascade, ThrustDesign};
 /// use forwardstep_core::plant::{Plant, Rotorcraft, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
@@ -67,12 +67,12 @@ pub struct RotorcraftMeasured<'a> {
 /// outer.yaw.gain = 0.0;
 /// let law = ThrustCascade { outer, rates: RateLoop { inertia: *plant.inertia(), bandwidth_per_s: 30.0 } };
 /// let turning = [0.5, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.7];
-/// let given = Given { measured: law.see(&turning)?, heard: Heard::new(&[1.0], &turning[..3], 3)?, target: Jets::NONE };
+/// let given = ControllerInput { measured: law.see(&turning)?, heard: Heard::new(&[1.0], &turning[..3], 3)?, target: Jets::NONE };
 /// let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
 /// let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
 /// law.start(&mut (), given, &[], &mut state)?;
 /// let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 13]);
-/// law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+/// law.evaluate(&mut (), given, &state, ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
 /// plant.rate(&mut plant.scratch(), &turning, &input, &[], &mut rate)?;
 /// assert!((rate[12] + 30.0 * 0.7).abs() < 1e-12 && rate[10].abs() + rate[11].abs() < 1e-12);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -124,7 +124,7 @@ impl Controller for ThrustCascade {
     fn start(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -134,9 +134,9 @@ impl Controller for ThrustCascade {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("input", 4, asked.input.len())?;
         let outer = self.outer.shown_len();
@@ -156,7 +156,7 @@ impl Controller for ThrustCascade {
         Ok(())
     }
 
-    fn trouble(&self, state: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, state: &[f64], _: &[f64]) -> Option<Singularity> {
         self.outer.vanishing(state)
     }
 
@@ -166,7 +166,7 @@ impl Controller for ThrustCascade {
         &self,
         (): &mut (),
         truth: Truth<'_, Rotorcraft>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         shown: &[f64],
     ) -> Result<Balance, LengthError> {

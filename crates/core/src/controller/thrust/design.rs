@@ -1,7 +1,7 @@
 //! What can be chosen about the control of a vehicle.
 
 use crate::attitude::{Quaternion, rotate};
-use crate::controller::Trouble;
+use crate::controller::Singularity;
 use crate::signal::Signal;
 use crate::sine_and_cosine;
 
@@ -77,7 +77,7 @@ impl Floor {
     }
 
     /// What the law divides by, when it is too small.
-    pub(super) fn trouble(self, sigma: f64) -> Option<Trouble> {
+    pub(super) fn trouble(self, sigma: f64) -> Option<Singularity> {
         let floor = match self {
             Floor::Stops(floor) => floor,
             // Kept above its floor from wherever it started, unless that was no thrust at all.
@@ -85,7 +85,7 @@ impl Floor {
         };
         // Not a number is trouble too.
         let enough = sigma > floor;
-        (!enough).then_some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
+        (!enough).then_some(Singularity::Vanishes { signal: Signal::Thrust, axis: 0, value: sigma, floor })
     }
 }
 

@@ -111,7 +111,7 @@ use crate::{LengthError, sine_and_cosine};
 /// Where all agree at rest σ carries the weight and nothing moves; a neighbour elsewhere moves z⃛ first, by (49):
 ///
 /// ```
-/// use forwardstep_core::controller::{Asked, Controller, Given, Jets, Thrust, ThrustDesign};
+/// use forwardstep_core::controller::{ControllerOutput, Controller, ControllerInput, Jets, Thrust, ThrustDesign};
 /// use forwardstep_core::plant::{Plant, Vehicle};
 /// use forwardstep_core::reference::Heard;
 ///
@@ -122,12 +122,12 @@ use crate::{LengthError, sine_and_cosine};
 /// for shift in [0.0, 0.1] {
 ///     let w = 0.8;
 ///     let (degree, sums) = ([w], [w * (0.5 + shift), w * 1.0, w * -2.0]);
-///     let given = Given { measured: law.see(&at_rest)?, heard: Heard::new(&degree, &sums, 3)?, target: Jets::NONE };
+///     let given = ControllerInput { measured: law.see(&at_rest)?, heard: Heard::new(&degree, &sums, 3)?, target: Jets::NONE };
 ///     let size = |blocks: Vec<(_, usize)>| blocks.iter().map(|(_, n)| n).sum::<usize>();
 ///     let (mut state, mut d_state) = (vec![0.0; size(law.states())], vec![0.0; size(law.states())]);
 ///     law.start(&mut (), given, &[], &mut state)?;
 ///     let (mut input, mut shown, mut rate) = ([0.0; 4], vec![0.0; size(law.shown())], [0.0; 10]);
-///     law.evaluate(&mut (), given, &state, Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
+///     law.evaluate(&mut (), given, &state, ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown })?;
 ///     vehicle.rate(&mut (), &at_rest, &input, &[], &mut rate)?;
 ///     assert!((input[0] - 1.5 * 9.81).abs() < 1e-12 && rate.iter().all(|rate| rate.abs() < 1e-12));
 ///     // α₀ = 1 · 2 · 3

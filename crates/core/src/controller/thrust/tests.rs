@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use super::*;
 use crate::Gain;
-use crate::controller::{Asked, Controller, Given, Jet, Trouble, Truth};
+use crate::controller::{Controller, ControllerInput, ControllerOutput, Jet, Singularity, Truth};
 use crate::plant::{Plant, Rotorcraft, total};
 
 const MASS: f64 = 1.3;
@@ -72,13 +72,13 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
         let mut output = vec![0.0; self.plant.output_len()];
         self.plant.output(&mut self.plant.scratch(), state, &mut output).unwrap();
         let heard = Heard::new(&[DEGREE], &SUMS, 3).unwrap();
-        let given = Given { measured: self.law.see(&output).unwrap(), heard, target };
+        let given = ControllerInput { measured: self.law.see(&output).unwrap(), heard, target };
         let mut rate = vec![0.0; y.len()];
         let mut shown = vec![0.0; total(&self.law.shown())];
         let mut input = vec![0.0; total(&self.plant.inputs())];
         let (d_state, d_own) = rate.split_at_mut(self.plant_len());
         let mut scratch = self.law.scratch();
-        let asked = Asked { input: &mut input, d_state: d_own, shown: &mut shown };
+        let asked = ControllerOutput { input: &mut input, d_state: d_own, shown: &mut shown };
         self.law.evaluate(&mut scratch, given, own, asked).unwrap();
         self.plant.rate(&mut self.plant.scratch(), state, &input, &[], d_state).unwrap();
         let truth = Truth { plant: &self.plant, state, external: &[] };
@@ -92,7 +92,7 @@ impl<C: Controller<Exchange = Position>> Closed<C> {
         let heard = Heard::new(&[DEGREE], &SUMS, 3).unwrap();
         let mut output = vec![0.0; self.plant.output_len()];
         self.plant.output(&mut self.plant.scratch(), state, &mut output).unwrap();
-        let given = Given { measured: self.law.see(&output).unwrap(), heard, target };
+        let given = ControllerInput { measured: self.law.see(&output).unwrap(), heard, target };
         let mut own = vec![0.0; total(&self.law.states())];
         self.law.start(&mut self.law.scratch(), given, &[], &mut own).unwrap();
         [state, &own].concat()
@@ -365,7 +365,7 @@ fn thrust_near_zero_is_trouble_or_kept_away() {
         (least, None)
     };
     let (_, trouble) = drop(&law);
-    let Some(Trouble::Vanishes { value, floor: at, .. }) = trouble else { panic!("{trouble:?}") };
+    let Some(Singularity::Vanishes { value, floor: at, .. }) = trouble else { panic!("{trouble:?}") };
     assert!(at == floor && value <= floor && value > 0.0, "seen before zero: {value}");
     law.floor = Floor::Kept { floor, approach_s: 0.1 };
     let (least, trouble) = drop(&law);
@@ -383,15 +383,15 @@ fn wrong_lengths_are_errors() {
     let heard = Heard::new(&[0.0], &[0.0; 3], 3).unwrap();
     let [first, second, _] = offset(0.0);
     let two = [first, second];
-    let given = Given { measured: law.see(&output).unwrap(), heard, target: Jets::from(&two) };
+    let given = ControllerInput { measured: law.see(&output).unwrap(), heard, target: Jets::from(&two) };
     let mut state = vec![0.0; 12];
     let need = LengthError { what: "target", need: 3, got: 2 };
     assert_eq!(law.start(&mut (), given, &[], &mut state), Err(need));
     let jets = offset(0.0);
-    let given = Given { target: Jets::from(&jets), ..given };
+    let given = ControllerInput { target: Jets::from(&jets), ..given };
     assert!(law.start(&mut (), given, &[vec![0.0; 2]], &mut state).is_err());
     assert!(law.start(&mut (), given, &[vec![0.5; 3]], &mut state).is_ok());
-    let asked = Asked { input: &mut [0.0; 3], d_state: &mut [0.0; 12], shown: &mut [0.0; 16] };
+    let asked = ControllerOutput { input: &mut [0.0; 3], d_state: &mut [0.0; 12], shown: &mut [0.0; 16] };
     assert!(law.evaluate(&mut (), given, &state, asked).is_err());
     assert!(plant.rate(&mut (), &output, &[0.0; 3], &[], &mut [0.0; 10]).is_err());
 }

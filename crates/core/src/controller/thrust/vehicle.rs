@@ -4,14 +4,14 @@ use alloc::vec::Vec;
 
 use super::Thrust;
 use crate::LengthError;
-use crate::controller::{Asked, Balance, Controller, Given, Trouble, Truth};
+use crate::controller::{Balance, Controller, ControllerInput, ControllerOutput, Singularity, Truth};
 use crate::plant::{Vehicle, VehicleState};
 use crate::reference::Position;
 use crate::signal::{Block, Signal};
 
 impl Thrust {
     /// What the law divides by, when it is too small.
-    pub(super) fn vanishing(&self, state: &[f64]) -> Option<Trouble> {
+    pub(super) fn vanishing(&self, state: &[f64]) -> Option<Singularity> {
         self.floor.trouble(self.sigma(state)?)
     }
 }
@@ -52,7 +52,7 @@ impl Controller for Thrust {
     fn start(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         wanted: &[Vec<f64>],
         state: &mut [f64],
     ) -> Result<(), LengthError> {
@@ -62,9 +62,9 @@ impl Controller for Thrust {
     fn evaluate(
         &self,
         (): &mut (),
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
-        asked: Asked<'_>,
+        asked: ControllerOutput<'_>,
     ) -> Result<(), LengthError> {
         LengthError::check("input", 4, asked.input.len())?;
         let flight = self.fly(given.measured, given.heard, given.target, state, [asked.d_state, asked.shown])?;
@@ -73,7 +73,7 @@ impl Controller for Thrust {
         Ok(())
     }
 
-    fn trouble(&self, state: &[f64], _: &[f64]) -> Option<Trouble> {
+    fn trouble(&self, state: &[f64], _: &[f64]) -> Option<Singularity> {
         self.vanishing(state)
     }
 
@@ -83,7 +83,7 @@ impl Controller for Thrust {
         &self,
         (): &mut (),
         truth: Truth<'_, Vehicle>,
-        given: Given<'_, Self>,
+        given: ControllerInput<'_, Self>,
         state: &[f64],
         _: &[f64],
     ) -> Result<Balance, LengthError> {

@@ -41,7 +41,7 @@ enum NewError {
     Write { path: PathBuf, reason: ErrorKind },
     #[error("the path of the robot, `{}`, cannot be written down in a scenario", shown(.0))]
     NotText(PathBuf),
-    #[error("`{}` has no joints that could rub", shown(.0))]
+    #[error("`{}` has no joints, so that friction has no effect", shown(.0))]
     NoJoints(String),
     #[error("one agent alone has no other to agree with")]
     Alone,

@@ -49,7 +49,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
     let unit = names::gap_unit(record.setup);
     html! {
         section #promises {
-            h2 { "Promised and happened" }
+            h2 { "Promised and observed" }
             div.beside {
                 div.card {
                     h3 { "Promised" " " span.by { (report.theorem) " · " (report.theorem.source().words()) } }

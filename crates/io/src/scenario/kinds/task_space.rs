@@ -53,7 +53,7 @@ enum TipProblem {
     #[error("the law `task_space` needs `end_effector` for a robot from a URDF")]
     Missing,
     /// A tip where there is one already.
-    #[error("the tip of a planar arm is the end of its second link; `end_effector` is for robots from a URDF")]
+    #[error("the end-effector of a planar arm is the end of its second link; `end_effector` is for robots from a URDF")]
     OfPlanarArm,
     /// A gain of an orientation that does not follow.
     #[error("`attitude_gain` is for an end-effector whose orientation follows the target too")]

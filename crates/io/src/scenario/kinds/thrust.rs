@@ -91,7 +91,7 @@ pub struct RotorcraftFile {
     /// Inertia about the centre of mass in the axes of the body, in kg m²: a number, the diagonal, or the rows of a symmetric
     /// matrix.
     pub inertia_kg_m2: At<GainFile>,
-    /// Four rotors on the corners of a square. Default: every thrust and every torque can be had.
+    /// Four rotors on the corners of a square. Default: every thrust and torque that is asked for can be produced.
     pub rotors: Option<At<RotorsFile>>,
 }
 

@@ -4,7 +4,7 @@ use super::ClosedLoop;
 use crate::closed_loop::frictions::Frictions;
 use crate::closed_loop::sampling::Sampling;
 use crate::closed_loop::sliding::Slider;
-use crate::engine::{DelaySystem, Happened, Heard, Port};
+use crate::engine::{DelaySystem, EventOutcome, Heard, Port};
 
 impl ClosedLoop<'_> {
     /// The rates of the state `x` at an instant inside the last step; what its end needs stays as it is.
@@ -96,14 +96,14 @@ impl DelaySystem for ClosedLoop<'_> {
         sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s).min(rubs_s)
     }
 
-    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> Happened {
+    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> EventOutcome {
         let mut happened = self.pushes.happen(until_s);
         if self.kink_s <= until_s {
             for block in &mut self.blocks {
                 block.columns.pass_kink(until_s, &mut x[block.state.clone()]);
             }
             self.kink_s = self.next_kink_s(until_s);
-            happened = Happened::Jumped;
+            happened = EventOutcome::Jumped;
         }
         if let Some(slider) = &mut self.slider {
             if slider.next_s() <= until_s {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_core::LengthError;
 use forwardstep_core::agent::VelocityFilter;
-use forwardstep_core::controller::{JetsBuffer, Trouble};
+use forwardstep_core::controller::{JetsBuffer, Singularity};
 use forwardstep_core::sampled::{self, Recipe, Sampled, StartState};
 use forwardstep_core::signal::Block;
 
@@ -174,7 +174,7 @@ impl Columns for Solo {
         }
     }
 
-    fn trouble(&self, x: &[f64]) -> Option<(usize, Trouble)> {
+    fn trouble(&self, x: &[f64]) -> Option<(usize, Singularity)> {
         // A safe command stands where the law fails.
         if self.digital.as_ref().is_some_and(|digital| digital.failures().0) {
             return None;

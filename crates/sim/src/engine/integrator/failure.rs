@@ -1,6 +1,6 @@
 //! Why a step could not be made, and what is to blame.
 
-use super::super::hearing::Refuted;
+use super::super::delayed_inputs::Refuted;
 use super::super::stiffness::{Work, dominant_rate};
 use super::{DelaySystem, Integrator};
 

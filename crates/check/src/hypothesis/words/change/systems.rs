@@ -177,7 +177,8 @@ pub(super) fn robot(evidence: &RobotEvidence) -> Option<String> {
             }
             Some(limit_m) => format!("a target that keeps clearly farther than {} m", rounded_up(limit_m)),
             None => {
-                "a target whose coordinates repeat with one period, clearly inside of what the tip can reach".into()
+                "a target whose coordinates repeat with one period, clearly inside of what the end-effector can reach"
+                    .into()
             }
         },
         RobotEvidence::OutOfReach { side, limit_m, .. } => match side {

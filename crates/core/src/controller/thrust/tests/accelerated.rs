@@ -120,7 +120,7 @@ fn own_thrust_near_zero_is_trouble_or_kept_away_and_wrong_lengths_are_errors() {
     assert!((floor - 0.08 * MASS * G).abs() < 1e-12);
     let trouble =
         |closed: &Closed<ThrustByAcceleration>, y: &[f64]| closed.law.trouble(&y[Z..], &closed.at(0.0, y).shown);
-    let seen = Some(Trouble::Vanishes { signal: Signal::Thrust, axis: 0, value: 0.4, floor });
+    let seen = Some(Singularity::Vanishes { signal: Signal::Thrust, axis: 0, value: 0.4, floor });
     assert_eq!(trouble(&closed, &y), seen);
     y[SIGMA] = 2.0 * floor;
     assert_eq!(trouble(&closed, &y), None);
@@ -136,7 +136,7 @@ fn own_thrust_near_zero_is_trouble_or_kept_away_and_wrong_lengths_are_errors() {
     assert!(closed.law.see(&[0.0; 13]).is_err() && closed.law.see(&[0.0; 15]).is_err());
     let output = [1.0; 14];
     let heard = Heard::new(&[0.0], &[0.0; 3], 3).unwrap();
-    let given = Given { measured: closed.law.see(&output).unwrap(), heard, target: Jets::NONE };
+    let given = ControllerInput { measured: closed.law.see(&output).unwrap(), heard, target: Jets::NONE };
     let mut state = [0.0; 8];
     assert!(closed.law.start(&mut (), given, &[], &mut state[1..]).is_err());
     assert!(closed.law.start(&mut (), given, &[vec![0.0; 2]], &mut state).is_err());
@@ -144,7 +144,7 @@ fn own_thrust_near_zero_is_trouble_or_kept_away_and_wrong_lengths_are_errors() {
     assert_eq!(state, [0.5, 0.5, 0.5, 0.25, 0.25, 0.25, 0.3, 0.0]);
     for [inputs, rates, shown] in [[3, 8, 14], [4, 7, 14], [4, 8, 13]] {
         let (mut input, mut d_state, mut shown) = (vec![0.0; inputs], vec![0.0; rates], vec![0.0; shown]);
-        let asked = Asked { input: &mut input, d_state: &mut d_state, shown: &mut shown };
+        let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
         assert!(closed.law.evaluate(&mut (), given, &state, asked).is_err());
     }
 }

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use forwardstep_core::LengthError;
-use forwardstep_core::controller::{JetsBuffer, Trouble};
+use forwardstep_core::controller::{JetsBuffer, Singularity};
 use forwardstep_core::sampled::{Recipe, Sampled};
 
 use super::columns::{Columns, Inputs};
@@ -19,7 +19,7 @@ use crate::setup::{AgentSetup, Control, Setup};
 use crate::trajectory::Pieces;
 
 /// The leader.
-pub(crate) struct Guide {
+pub(crate) struct LeaderBlock {
     pieces: Pieces,
     /// Its vertex.
     vertex: usize,
@@ -28,7 +28,7 @@ pub(crate) struct Guide {
     composite: Option<[f64; 2]>,
 }
 
-impl Guide {
+impl LeaderBlock {
     pub(crate) fn new(
         leader: &Leader,
         composite: Option<[f64; 2]>,
@@ -38,7 +38,7 @@ impl Guide {
         let wrong = |error| SetupError::Trajectory { agent: leader.name.clone(), error };
         let pieces = Pieces::new(leader.trajectory.clone(), end_s).map_err(wrong)?;
         let jets = JetsBuffer::new(pieces.axes(), 0);
-        Ok(Guide { pieces, vertex, jets, composite })
+        Ok(LeaderBlock { pieces, vertex, jets, composite })
     }
 
     /// Puts the k-th derivatives of every axis at `t_s` into `out`, from k = `first` on.
@@ -67,7 +67,7 @@ impl Guide {
     }
 }
 
-impl Columns for Guide {
+impl Columns for LeaderBlock {
     fn state_len(&self) -> usize {
         (2 + usize::from(self.composite.is_some())) * self.pieces.axes()
     }
@@ -146,7 +146,7 @@ impl Columns for Guide {
 
     fn settle(&mut self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64]) -> Option<(usize, Trouble)> {
+    fn trouble(&self, _: &[f64]) -> Option<(usize, Singularity)> {
         None
     }
 

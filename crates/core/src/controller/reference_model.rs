@@ -46,7 +46,7 @@ use crate::signal::Signal;
 
 /// Where z leads.
 #[derive(Clone, Debug)]
-pub enum Guide {
+pub enum ReferenceModel {
     /// To a desired trajectory.
     Tracking {
         /// α₀ … α_{N−1} of the Hurwitz polynomial θ^N + Σ α_r θ^r.
@@ -60,7 +60,7 @@ pub enum Guide {
 
 /// Why a guide does not suit a plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum GuideError {
+pub enum ReferenceModelError {
     /// ℓ would be less than it has to be.
     #[error("roots of the reference dynamics: {got}, but at least {least} are needed here")]
     TooFew {
@@ -77,31 +77,31 @@ pub enum GuideError {
     NoDerivatives,
 }
 
-impl Guide {
+impl ReferenceModel {
     /// How many roots it was made from: N for tracking and for desired dynamics, N − 1 for consensus.
     pub fn roots(&self) -> usize {
         match self {
-            Guide::Tracking { alpha } => alpha.len(),
-            Guide::Consensus(consensus) => consensus.order(),
-            Guide::Desired(desired) => desired.order(),
+            ReferenceModel::Tracking { alpha } => alpha.len(),
+            ReferenceModel::Consensus(consensus) => consensus.order(),
+            ReferenceModel::Desired(desired) => desired.order(),
         }
     }
 
     /// ℓ for a plant of order `k`: the blocks z, ż, …, z^(ℓ−1).
     pub fn vectors(&self, k: usize) -> usize {
         match self {
-            Guide::Tracking { alpha } => (alpha.len() + 1).saturating_sub(k),
-            Guide::Consensus(consensus) => (consensus.order() + 2).saturating_sub(k),
-            Guide::Desired(desired) => desired.vectors(k),
+            ReferenceModel::Tracking { alpha } => (alpha.len() + 1).saturating_sub(k),
+            ReferenceModel::Consensus(consensus) => (consensus.order() + 2).saturating_sub(k),
+            ReferenceModel::Desired(desired) => desired.vectors(k),
         }
     }
 
     /// Whether it leads to a trajectory.
     pub fn tracks(&self) -> bool {
         match self {
-            Guide::Tracking { .. } => true,
-            Guide::Consensus(_) => false,
-            Guide::Desired(desired) => desired.tracks(),
+            ReferenceModel::Tracking { .. } => true,
+            ReferenceModel::Consensus(_) => false,
+            ReferenceModel::Desired(desired) => desired.tracks(),
         }
     }
 
@@ -113,32 +113,32 @@ impl Guide {
     /// ℓ for a plant of order `k`, if it is at least `least`.
     ///
     /// # Errors
-    /// [`GuideError`] when there are too few roots.
-    pub fn check(&self, k: usize, least: usize) -> Result<usize, GuideError> {
+    /// [`ReferenceModelError`] when there are too few roots.
+    pub fn check(&self, k: usize, least: usize) -> Result<usize, ReferenceModelError> {
         let got = self.roots();
         let least = match self {
-            Guide::Tracking { .. } | Guide::Desired(_) => (least + k).saturating_sub(1),
-            Guide::Consensus(_) => (least + k).saturating_sub(2),
+            ReferenceModel::Tracking { .. } | ReferenceModel::Desired(_) => (least + k).saturating_sub(1),
+            ReferenceModel::Consensus(_) => (least + k).saturating_sub(2),
         };
         if got < least {
-            return Err(GuideError::TooFew { least, got });
+            return Err(ReferenceModelError::TooFew { least, got });
         }
         Ok(self.vectors(k))
     }
 
-    /// Room for one call of [`Guide::rate`].
-    pub fn work(&self, axes: usize) -> GuideWork {
-        let blocks = if let Guide::Consensus(consensus) = self { consensus.order() } else { 0 };
+    /// Room for one call of [`ReferenceModel::rate`].
+    pub fn work(&self, axes: usize) -> ReferenceModelWork {
+        let blocks = if let ReferenceModel::Consensus(consensus) = self { consensus.order() } else { 0 };
         let axis = || vec![0.0; axes];
         let all = || vec![0.0; blocks * axes];
-        let steps = if let Guide::Desired(desired) = self { desired.steps() } else { 0 };
+        let steps = if let ReferenceModel::Desired(desired) = self { desired.steps() } else { 0 };
         let protocol = vec![0.0; steps];
-        GuideWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all(), protocol }
+        ReferenceModelWork { q: axis(), dq: axis(), z: axis(), dz: axis(), state: all(), rate: all(), protocol }
     }
 
     /// d/dt of z, ż, …, z^(ℓ−1) for a plant of order `k` with `axes` axes.
     ///
-    /// `measured` holds x, ẋ, …, as many blocks as are measured, k or k − 1; the target has [`Guide::target_derivatives`].
+    /// `measured` holds x, ẋ, …, as many blocks as are measured, k or k − 1; the target has [`ReferenceModel::target_derivatives`].
     ///
     /// # Errors
     /// [`LengthError`] when a slice has the wrong length.
@@ -146,11 +146,11 @@ impl Guide {
         &self,
         k: usize,
         axes: usize,
-        leads: Leads<'_, '_>,
-        work: &mut GuideWork,
+        leads: ReferenceModelInput<'_, '_>,
+        work: &mut ReferenceModelWork,
         d_state: &mut [f64],
     ) -> Result<(), LengthError> {
-        let Leads { measured, state: own, heard, target } = leads;
+        let ReferenceModelInput { measured, state: own, heard, target } = leads;
         let len = self.vectors(k) * axes;
         LengthError::check("reference state", len, own.len())?;
         LengthError::check("reference rate", len, d_state.len())?;
@@ -163,7 +163,7 @@ impl Guide {
             if r < p { measured[r * axes + axis] } else { own[(r + 1 - k) * axes + axis] }
         };
         match self {
-            Guide::Tracking { alpha } => {
+            ReferenceModel::Tracking { alpha } => {
                 LengthError::check("target", axes, target.len())?;
                 for (axis, jet) in target.iter().enumerate() {
                     let mut rate = jet.get(alpha.len()).copied().unwrap_or(f64::NAN);
@@ -173,9 +173,9 @@ impl Guide {
                     d_state[top + axis] = rate;
                 }
             }
-            Guide::Consensus(consensus) => {
+            ReferenceModel::Consensus(consensus) => {
                 // As a robot would call it: x₀ is its position, x₁ its velocity, x₂ its ż, …. Its z is not used.
-                let GuideWork { q, dq, z, dz, state, rate, .. } = work;
+                let ReferenceModelWork { q, dq, z, dz, state, rate, .. } = work;
                 LengthError::check("room for the reference", consensus.vectors() * axes, state.len())?;
                 LengthError::check("room for an axis", axes, q.len())?;
                 for axis in 0..axes {
@@ -189,7 +189,7 @@ impl Guide {
                 consensus.evaluate(axes, Measured { q, dq }, state, heard, out)?;
                 d_state[top..].copy_from_slice(&rate[rate.len() - axes..]);
             }
-            Guide::Desired(desired) => {
+            ReferenceModel::Desired(desired) => {
                 LengthError::check("the order of the plant", 1, k.min(1))?;
                 LengthError::check("what is measured", k * axes, measured.len())?;
                 LengthError::check("target", if desired.tracks() { axes } else { 0 }, target.len())?;
@@ -214,8 +214,8 @@ impl Guide {
         let block = top.len();
         LengthError::check("reference state", self.vectors(k) * block, state.len())?;
         match self {
-            Guide::Tracking { .. } | Guide::Consensus(_) => {}
-            Guide::Desired(desired) => {
+            ReferenceModel::Tracking { .. } | ReferenceModel::Consensus(_) => {}
+            ReferenceModel::Desired(desired) => {
                 for (entry, top) in top.iter().enumerate() {
                     desired.begin(k, Place { block, entry }, *top, degree, state);
                 }
@@ -226,14 +226,14 @@ impl Guide {
 
     /// What block `r` of its state is: z^(r), or what stands in its place where desired dynamics are written in x.
     pub fn signal(&self, r: usize) -> Signal {
-        let in_x = matches!(self, Guide::Desired(desired) if desired.written() == WrittenIn::X);
+        let in_x = matches!(self, ReferenceModel::Desired(desired) if desired.written() == WrittenIn::X);
         if in_x && r > 0 { Signal::ReferenceIntegral(r as u8) } else { Signal::Reference(r as u8) }
     }
 }
 
-/// What [`Guide::rate`] goes by.
+/// What [`ReferenceModel::rate`] goes by.
 #[derive(Clone, Copy, Debug)]
-pub struct Leads<'a, 'h> {
+pub struct ReferenceModelInput<'a, 'h> {
     /// x, ẋ, …, as far as measured.
     pub measured: &'a [f64],
     /// z, ż, ….
@@ -246,7 +246,7 @@ pub struct Leads<'a, 'h> {
 
 /// Room for one call of (24), which is written for robots.
 #[derive(Clone, Debug)]
-pub struct GuideWork {
+pub struct ReferenceModelWork {
     q: Vec<f64>,
     dq: Vec<f64>,
     z: Vec<f64>,

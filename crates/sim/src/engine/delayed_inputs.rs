@@ -42,7 +42,7 @@ struct Link {
     sender: usize,
     receiver: usize,
     weight: f64,
-    /// Index into [`Hearing::sources`].
+    /// Index into [`DelayedInputs::sources`].
     source: usize,
 }
 
@@ -105,7 +105,7 @@ struct Varying {
 
 /// The network in force, ready to gather.
 #[derive(Debug)]
-pub(crate) struct Hearing {
+pub(crate) struct DelayedInputs {
     ports: Vec<Port>,
     /// Entries of one message.
     entries: usize,
@@ -121,7 +121,7 @@ pub(crate) struct Hearing {
     refuted: Option<Refuted>,
 }
 
-impl Hearing {
+impl DelayedInputs {
     /// `entries` numbers are sent by every agent; `x` is the state at t = 0, which everybody is taken to have sent before.
     pub(crate) fn new(ports: Vec<Port>, entries: usize, x: &[f64], coupling: Coupling) -> Self {
         let mut sent: Vec<(usize, usize)> =
@@ -136,7 +136,7 @@ impl Hearing {
         }
         // What sampled controllers compute is not in the state; their first messages are read as they are sent.
         let initial = sent.iter().map(|(_, state)| x.get(*state).copied().unwrap_or(0.0)).collect();
-        Hearing {
+        DelayedInputs {
             ports,
             entries,
             blocks,
@@ -323,7 +323,7 @@ impl Hearing {
     }
 }
 
-impl Hearing {
+impl DelayedInputs {
     /// The same under a nonlinear coupling: what is heard is taken to be nearer to the receiver.
     fn gather_coupled(&self, data: &[f64], x: &[f64], own: Option<usize>, sums: &mut [f64]) {
         let width = self.width();
@@ -352,7 +352,7 @@ impl Hearing {
 }
 
 struct Gather<'a> {
-    hearing: &'a Hearing,
+    hearing: &'a DelayedInputs,
     data: &'a [f64],
     x: &'a [f64],
     sums: &'a mut [f64],
@@ -416,7 +416,7 @@ mod tests {
         // Two populations: two agents side by side with ten states each, then one with five; two numbers are sent.
         let port = |state, entry, degree, stride| Port { state, entry, degree, stride };
         let ports = vec![port(0, 0, 0, 2), port(1, 1, 1, 2), port(20, 4, 2, 1)];
-        let hearing = Hearing::new(ports, 2, &[0.0; 25], Coupling::Linear);
+        let hearing = DelayedInputs::new(ports, 2, &[0.0; 25], Coupling::Linear);
         assert_eq!(hearing.width(), 6);
         assert_eq!(hearing.blocks(), [(0, 0, 4), (20, 4, 2)]);
     }

@@ -3,7 +3,7 @@
 //! At a sample everybody measures and sends before anybody hears. What is heard through a delay is the newest message that
 //! was sent by then; before the first one everybody is taken to have sent it.
 
-use super::hearing::{Heard, Hearing, Port, Refuted};
+use super::delayed_inputs::{DelayedInputs, Heard, Port, Refuted};
 use super::timeline::{Timeline, merge_until};
 use crate::network::Network;
 
@@ -12,10 +12,10 @@ const SLACK_PERIODS: f64 = 1e-6;
 
 /// The messages of the last samples, as long as any delay.
 #[derive(Debug)]
-pub(crate) struct Radio<'a> {
+pub(crate) struct SampledChannel<'a> {
     network: &'a Network,
     timeline: Timeline<'a>,
-    hearing: Hearing,
+    hearing: DelayedInputs,
     /// The graph has to be taken anew.
     rewire: bool,
     sample_hz: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Radio<'a> {
     ring: u64,
 }
 
-impl<'a> Radio<'a> {
+impl<'a> SampledChannel<'a> {
     /// For a run over [0, `end_s`] with samples at k / `sample_hz`, of which a message may be `timeout_s` old; `x` is the state at
     /// t = 0.
     pub(crate) fn new(
@@ -42,10 +42,10 @@ impl<'a> Radio<'a> {
         x: &[f64],
     ) -> Self {
         let timeline = Timeline::new(network, end_s, 0);
-        let hearing = Hearing::new(ports, entries, x, network.coupling);
+        let hearing = DelayedInputs::new(ports, entries, x, network.coupling);
         let width = hearing.width();
         let ring = ring(network, end_s, sample_hz);
-        Radio {
+        SampledChannel {
             network,
             timeline,
             hearing,
