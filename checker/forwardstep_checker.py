@@ -1985,8 +1985,9 @@ def swarm(claim, least, pivots):
 # have the sign of the diagonal, that is at least the smallest eigenvalue of the symmetric part, which Gershgorin's discs bound.
 def factors(scenario, state=None):
     for agent in (one for one in scenario.agents if one.law in CHAIN_LAWS):
-        # Of a pure-feedback chain the factor is a slope, which no state has here.
+        # Of a pure-feedback chain it is a product of slopes, which are not computed here: no state refutes it, and nothing shows it.
         psi = {"strict_feedback": "1", "pure_feedback": "slope"}.get(agent.robot, agent.body.get("psi", "1"))
+        decided(state or psi != "slope", "the slopes of a pure-feedback chain are not computed here")
         within = regular(psi) if isinstance(psi, list) else enclose(formula(psi, [*STATES, "slope"]), states_of(state) if state else WHOLE)
         yield agent.name, within, positive(agent.gains.get("floor", Fraction(1, 1000)), "floor")
 
@@ -2009,8 +2010,7 @@ def determinant(rows):
 # In this state, or in all.
 @rule("input-factor", "factor")
 def small_factor(claim, agent, state=None):
-    found = {name: size(within) < floor for name, within, floor in factors(claim.scenario, state)}
-    require(agent, found.get(agent.text(), False), "has no factor below its floor")
+    require(agent, agent.text() in [n for n, x, by in factors(claim.scenario, state) if size(x) < by], "has no factor below its floor")
 
 # An equation without a slope along its next state while the others are 0.7.
 @rule("input-factor", "unmoved")

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::support::{folder, forwardstep, stdout};
+use super::support::{folder, forwardstep, stderr, stdout};
 
 /// A loop, the verdict on it, and whether a run of it runs away.
 struct Case {
@@ -169,4 +169,17 @@ fn regress_the_mean_power_is_that_between_samples_wherever_rows_are() {
         means.push(mean);
     }
     assert!(means.iter().all(|mean| (mean / means[0] - 1.0).abs() < 0.05), "{means:?}");
+}
+
+/// ẋ = x u keeps the sign of x; steps over zero, where u has no value, are none of it.
+#[test]
+fn regress_a_factor_that_changes_its_sign_within_a_step_ends_the_run() {
+    let here = folder();
+    let scenario = "format = 2\n[time]\nend_s = 30\n[[agents]]\nname = \"a\"\ncount = 2\nstart.position = [[-1], [0.5]]\n\
+        robot.chain = { order = 1, psi = \"x\" }\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n\
+        [law.linearising]\ngain_per_s = 2\n[network]\nedges.ring = {}\n";
+    fs::write(here.path().join("own.toml"), scenario).unwrap();
+    let run = forwardstep(&here, &["run", "own.toml"]);
+    let said = format!("{}{}", stdout(&run), stderr(&run));
+    assert!(said.contains("Broke down at t = 1.7") && said.contains("a-2.divisor"), "{said}");
 }

@@ -158,7 +158,7 @@ pub(crate) fn simulate_with(
                 if let Some(breakdown) = left {
                     break Ending::BrokeDown(breakdown);
                 }
-                if let Some(breakdown) = vanished(&closed_loop, &integrator, step.end_s) {
+                if let Some(breakdown) = vanished(&mut closed_loop, &integrator, step.end_s) {
                     break Ending::BrokeDown(breakdown);
                 }
                 if let Some(breakdown) = pace.ran_away(&integrator, &closed_loop, step.end_s) {
@@ -184,7 +184,7 @@ pub(crate) fn simulate_with(
 }
 
 /// What a law divides by, where it comes too close to zero in the state that was evaluated last.
-fn vanished(closed_loop: &ClosedLoop<'_>, integrator: &Integrator<'_>, t_s: f64) -> Option<Breakdown> {
+fn vanished(closed_loop: &mut ClosedLoop<'_>, integrator: &Integrator<'_>, t_s: f64) -> Option<Breakdown> {
     let (agent, Singularity::Vanishes { signal, axis, value, floor }) = closed_loop.trouble(integrator.state())?;
     Some(Breakdown { t_s, agent, signal, axis, cause: BreakdownCause::Vanished { value, floor } })
 }

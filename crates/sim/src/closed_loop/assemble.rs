@@ -229,8 +229,8 @@ impl<'a> ClosedLoop<'a> {
     }
 
     /// Who is in trouble in the state `x`, which has just been evaluated.
-    pub(crate) fn trouble(&self, x: &[f64]) -> Option<(usize, Singularity)> {
-        self.blocks.iter().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
+    pub(crate) fn trouble(&mut self, x: &[f64]) -> Option<(usize, Singularity)> {
+        self.blocks.iter_mut().find_map(|block| block.columns.trouble(&x[block.state.clone()]))
     }
 
     /// The position and the velocity of an agent in the state `x`.

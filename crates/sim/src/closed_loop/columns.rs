@@ -63,7 +63,7 @@ pub(crate) trait Columns {
     /// Brings the block `x`, which a step has just reached, back to its manifold.
     fn settle(&mut self, x: &mut [f64]);
     /// Which member is in trouble in the state `x`, which has just been evaluated.
-    fn trouble(&self, x: &[f64]) -> Option<(usize, Singularity)>;
+    fn trouble(&mut self, x: &[f64]) -> Option<(usize, Singularity)>;
     /// When its right-hand side jumps of itself for the first time after `after_s`.
     fn next_event_s(&self, after_s: f64) -> f64;
     /// Goes past what jumps until `until_s`; may change the block `x`.

@@ -146,7 +146,7 @@ impl Columns for LeaderBlock {
 
     fn settle(&mut self, _: &mut [f64]) {}
 
-    fn trouble(&self, _: &[f64]) -> Option<(usize, Singularity)> {
+    fn trouble(&mut self, _: &[f64]) -> Option<(usize, Singularity)> {
         None
     }
 

@@ -343,7 +343,7 @@ impl Columns for Population {
     fn settle(&mut self, _: &mut [f64]) {}
 
     // (6)–(7) are defined everywhere.
-    fn trouble(&self, _: &[f64]) -> Option<(usize, Singularity)> {
+    fn trouble(&mut self, _: &[f64]) -> Option<(usize, Singularity)> {
         None
     }
 

@@ -39,6 +39,8 @@ pub(crate) struct Solo {
     now: Now,
     /// What the controller shows, when control is digital.
     shown: Vec<Block>,
+    /// Where what it divides by stands in what it shows, and its value after the last step.
+    divisor: (Option<usize>, Option<f64>),
     row: Vec<f64>,
 }
 
@@ -81,6 +83,12 @@ struct Now {
     d_controller: Vec<f64>,
 }
 
+/// Where the first number of a signal stands among what is shown.
+fn place_of(signal: Signal, shown: &[Block]) -> Option<usize> {
+    let at = shown.iter().position(|(own, _)| *own == signal)?;
+    Some(shown.iter().take(at).map(|(_, length)| length).sum())
+}
+
 impl Solo {
     /// The agent number `agent`. What a held input does is not what the balance balances, so there is none where it will be
     /// `sampled`.
@@ -115,7 +123,8 @@ impl Solo {
             d_controller: vec![0.0; lengths.controller],
         };
         let (digital, tracing, shown, row) = (None, None, Vec::new(), Vec::new());
-        Solo { agent, pair, target, effort_limits, digital, tracing, layout, now, shown, row }
+        let divisor = (place_of(Signal::Divisor, &pair.shown()), None);
+        Solo { agent, pair, target, effort_limits, digital, tracing, layout, now, shown, divisor, row }
     }
 
     fn is_offset(&self) -> bool {

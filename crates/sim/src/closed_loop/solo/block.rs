@@ -174,13 +174,25 @@ impl Columns for Solo {
         }
     }
 
-    fn trouble(&self, x: &[f64]) -> Option<(usize, Singularity)> {
+    fn trouble(&mut self, x: &[f64]) -> Option<(usize, Singularity)> {
         // A safe command stands where the law fails.
         if self.digital.as_ref().is_some_and(|digital| digital.failures().0) {
             return None;
         }
         let own = &x[self.layout.plant..self.layout.controller_end()];
-        self.pair.trouble(own, &self.now.shown).map(|trouble| (self.agent, trouble))
+        let close = self.pair.trouble(own, &self.now.shown);
+        // What changed its sign was zero in between, where nobody looked.
+        let (place, before) = self.divisor;
+        let now = place.and_then(|place| self.now.shown.get(place)).copied();
+        self.divisor.1 = now;
+        let passed = before.zip(now).is_some_and(|(before, now)| before * now < 0.0);
+        let at_zero = || {
+            let mut shown = self.now.shown.clone();
+            *shown.get_mut(place?)? = 0.0;
+            self.pair.trouble(own, &shown)
+        };
+        let trouble = if passed { close.or_else(at_zero) } else { close };
+        trouble.map(|trouble| (self.agent, trouble))
     }
 
     fn next_event_s(&self, after_s: f64) -> f64 {
