@@ -76,6 +76,24 @@ fn kinks_that_are_none_and_waves_of_waves_are_certified() {
     assert!(super::judged_if_read(&kink, "bounded-leader").is_none_or(|(_, outcome)| outcome != "accepted"), "{kink}");
 }
 
+/// Bounds until the last switch are enough for an edge that is there no longer, and what is constant in pieces alone has an enclosure.
+#[test]
+fn formulas_of_edges_that_are_gone_for_good_are_certified_until_then() {
+    let once = |first: &str| {
+        let edge = format!("[{{ from = \"m-1\", to = \"m-2\", {first} }}]");
+        let phases = format!("[[network.phases]]\ndwell_s = 1\nedges = {edge}\n[[network.phases]]\n{RING}");
+        masses(&format!("switching = \"once\"\n{phases}"))
+    };
+    for weight in ["1 + t", "exp(-t)"] {
+        accepted(&once(&format!("weight = \"{weight}\"")), "bounded-weights", "holds");
+    }
+    for delay in ["t", "t*abs(sin(t))"] {
+        accepted(&once(&format!("delay.formula_s = \"{delay}\"")), "bounded-delays", "holds");
+    }
+    accepted(&weighed("max(0.5, t/(1 + t)^2)"), "bounded-weights", "holds");
+    accepted(&delayed("max(0.5, t/(1 + t)^2)"), "bounded-delays", "holds");
+}
+
 #[test]
 fn delays_that_swing_ever_wider_are_refuted() {
     for delay in ["abs(t*sin(t))", "abs(t*cos(t))", "t*abs(sin(t))"] {
