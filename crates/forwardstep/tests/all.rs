@@ -5,6 +5,7 @@ mod architecture;
 mod book;
 mod bounded;
 mod certificates;
+mod changes;
 mod check;
 mod cli;
 mod compare;

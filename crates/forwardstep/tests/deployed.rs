@@ -2,6 +2,9 @@
 
 use std::fs;
 
+use forwardstep::check::{SamplingMargin, along};
+use forwardstep::io::scenario::open_scenario;
+use forwardstep::sim::run;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -182,4 +185,16 @@ fn regress_a_factor_that_changes_its_sign_within_a_step_ends_the_run() {
     let run = forwardstep(&here, &["run", "own.toml"]);
     let said = format!("{}{}", stdout(&run), stderr(&run));
     assert!(said.contains("Broke down at t = 1.7") && said.contains("a-2.divisor"), "{said}");
+}
+
+/// Whoever follows starts with the velocity and the acceleration that errors make, far above those of its leader.
+#[test]
+fn regress_the_margin_of_who_follows_is_that_of_its_start() {
+    for (name, hz) in [("pilot-ship", 20.0), ("theorem-8", 2000.0), ("theorem-9", 500.0), ("remark-12", 500.0)] {
+        let mut setup = open_scenario(name).unwrap().setup.sampled(hz);
+        setup.time.end_s = 5.0;
+        let said = SamplingMargin::of(&setup).unwrap().worst.sigma;
+        let reached = along(&setup, &run(&setup).unwrap().recording).margin.unwrap();
+        assert!(said > 0.9 * reached.sigma && said < 1.6 * reached.sigma, "{name}: {said}, {reached:?}");
+    }
 }

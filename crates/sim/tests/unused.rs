@@ -1,4 +1,4 @@
-//! What a kind of system does not read is refused, with the reason, and never accepted in silence.
+//! What a kind of system does not read is refused, with the reason, and never accepted without a word.
 
 use forwardstep_sim::reference::{Backstepping, Consensus};
 use std::ops::ControlFlow;

@@ -68,7 +68,7 @@ use crate::plant::Plant;
 use crate::reference::{Exchange, Heard};
 use crate::signal::{Block, Signal};
 
-/// What a controller has to go by at one instant.
+/// What a controller measures and receives at one instant.
 pub struct ControllerInput<'a, C: Controller> {
     /// What it may see of its own plant.
     pub measured: C::Measured<'a>,

@@ -177,11 +177,12 @@ impl Columns for Solo {
     fn trouble(&mut self, x: &[f64]) -> Option<(usize, Singularity)> {
         // A safe command stands where the law fails.
         if self.digital.as_ref().is_some_and(|digital| digital.failures().0) {
+            self.divisor.1 = None;
             return None;
         }
         let own = &x[self.layout.plant..self.layout.controller_end()];
         let close = self.pair.trouble(own, &self.now.shown);
-        // What changed its sign was zero in between, where nobody looked.
+        // What changed its sign was zero in between, where it is not evaluated.
         let (place, before) = self.divisor;
         let now = place.and_then(|place| self.now.shown.get(place)).copied();
         self.divisor.1 = now;
