@@ -50,9 +50,9 @@ MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS, MOST_E
 # A claim that is not shown: (words, where in the certificate).
 class Rejected(Exception): outcome = REJECTED
 
-def require(node, condition, words, value=None):
-    if not condition: raise Rejected(words, node.place)
-    return value
+def failed(error): raise error
+
+def require(node, condition, words, value=None): return value if condition else failed(Rejected(words, node.place))
 
 # Something that cannot be checked here.
 class Undecided(Exception): outcome = UNCHECKED
@@ -122,13 +122,9 @@ def read_toml(text):
     except (RecursionError, ValueError) as error: raise Meaningless(f"is not TOML, or nested too deeply: {error}") from None
 
 # `value`, which has a meaning under this condition.
-def such(condition, words, value=None):
-    if not condition: raise Meaningless(words)
-    return value
+def such(condition, words, value=None): return value if condition else failed(Meaningless(words))
 
-def decided(condition, words, value=None):
-    if not condition: raise Undecided(words)
-    return value
+def decided(condition, words, value=None): return value if condition else failed(Undecided(words))
 
 # What enclosures show, refute, or leave open.
 def settled(node, shown, refuted, words):
@@ -1133,7 +1129,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign")
+             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign", "starts-below")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1280,8 +1276,6 @@ def parallel(a, b): return all(a[k - 2] * b[k - 1] == a[k - 1] * b[k - 2] for k 
 # to all is where it was, seen from each link.
 @of_urdf
 def links(agent, root, locked):
-    found = []
-
     def body(link):
         if (inertial := link.find("inertial")) is None: return 0, [0] * 3, [0] * 3, None
         rows = [[decimal(inertial.find("inertia").get(f"i{k}", "0")) for k in row.split()] for row in ("xx xy xz", "xy yy yz", "xz yz zz")]
@@ -1298,7 +1292,7 @@ def links(agent, root, locked):
             if moves: found.append((kind == "prismatic", axis, above + placed_, sum(map(decimal, rubs)), []))
             visit(child, found[-1][-1] if moves else own, above + placed_ + [axis] * (kind in MOVING[:2] and bool(moves or above)))
 
-    bodies, joints = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint")
+    bodies, joints, found = {link.get("name"): body(link) for link in root.findall("link")}, root.findall("joint"), []
     for name in set(bodies) - {joint.find("child").get("link") for joint in joints}: visit(name, [], [])
     return found
 
@@ -1542,6 +1536,7 @@ TEXT = {(each, "text"): so for each, so in {
     ("fixed-graph", "one-graph"): lambda s, _: s.fixed(delays=False) and not s.varying() if s.reference == "pure_integral" else s.fixed(),
     ("common-first-root", "constant"): lambda s, _: all_constant(s), ("constant-weights", "text"): lambda s, _: not s.varying(),
     ("input-factor", "factor-away"): lambda s, _: all(max(low, -high) >= floor for _, (low, high), floor in factors(s)),
+    ("nonzero-thrust", "starts-below"): lambda s, _: any(starts_below(agent) for agent in s.agents if agent.law == "thrust"),
     ("start-attitude", "half-turn"): lambda s, own: scalar_part(s, own)[1] <= 0,
     # Every entry comes to zero as t grows, and the norm with it.
     ("nonzero-quaternion", "fades"): lambda _, own: all(limit(tree) == (0, 0) for tree in quaternion(own))}
@@ -1998,8 +1993,7 @@ def regular(psi):
     others = [sum(size(a[i][j]) + size(a[j][i]) for j in range(m) if j != i) for i in range(m)]
     least, norm = min(max(row[i][0], -row[i][1]) - others[i] / 2 for i, row in enumerate(a)), sum(size(x) ** 2 for row in a for x in row)
     if m <= MOST_EXPANDED and norm > 0 and not infinite(norm):
-        low, high = determinant(a)
-        least = max(least, sqrt_at(max(low, -high, Fraction(0)) ** 2 * (Fraction(m - 1) / norm) ** (m - 1))[0])
+        least = max(least, sqrt_at(magnitude(determinant(a))[0] ** 2 * (Fraction(m - 1) / norm) ** (m - 1))[0])
     return least, INF
 
 def determinant(rows):
@@ -2023,13 +2017,21 @@ def unmoved(claim, agent, equation):
         plain = re.sub(r"\bx(\d+)\b", lambda state: "t" if int(state[1]) == k + 1 else "0.7", str(text))
         require(equation, size(enclose(derivative(formula(plain)), WHOLE)) == 0, f"is moved by x{k + 1}")
 
-# A vector that a constant ψ takes to zero.
+# A vector that ψ makes shorter than its floor allows, in this state or in all.
 @rule("input-factor", "null-vector")
-def null_vector(claim, agent, vector):
-    psi, x = find(claim, agent).body.get("psi"), [entry.number() for entry in vector.each()]
-    require(agent, isinstance(psi, list) and all(len(row) == len(psi) for row in psi), "has no matrix ψ")
-    zero = [sum(constant(formula(entry, STATES)) * own for entry, own in zip(row, x, strict=True)) == 0 for row in psi]
-    require(vector, any(x) and all(zero), "is not taken to zero")
+def null_vector(claim, agent, vector, state=None):
+    own, x, within = find(claim, agent), [(entry.number(),) * 2 for entry in vector.each()], states_of(state) if state else WHOLE
+    psi, floor = own.body.get("psi"), positive(own.gains.get("floor", Fraction(1, 1000)), "floor")
+    require(agent, isinstance(psi, list) and all(len(row) == len(psi) == len(x) for row in psi), "has no matrix ψ of this size")
+    image = [dot([enclose(formula(entry, STATES), within) for entry in row], x) for row in psi]
+    require(vector, square(image)[1] < floor**2 * square(x)[0], "is taken neither to zero nor close to it")
+
+# Whether a thrust starts at a floor that ends the run, or below: the weight where nothing else is said, and a tenth of that.
+def starts_below(agent):
+    mass = decided("parameter_variation" not in agent.entry, "is drawn", agent.settings().get("estimate_start_kg", agent.body["mass_kg"]))
+    weight, floor = exact(mass, "mass") * exact(agent.body.get("gravity_m_s2", Fraction(981, 100)), "gravity"), agent.gains.get("floor", {})
+    start, stops = (exact(of.get(key, weight / by), key) for of, key, by in ((agent.gains, "thrust_start_n", 1), (floor, "stops_n", 10)))
+    return "kept" not in floor and start <= stops
 
 # --- The whole certificate
 

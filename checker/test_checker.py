@@ -1209,15 +1209,36 @@ class FalseProofs(unittest.TestCase):
             answer="violated", proof={"kind": "null-vector", "agent": agent, "vector": list(vector)})
         flat = ('psi = [["2", "0.5"], ["-0.3", "1 + x1^2"]]', 'psi = [["0.1", "0.3"], ["0.3", "0.9"]]')
         self.accepted("vector-plants", "input-factor", null("tanks", "3", "-1"), flat)
-        for vector in (("0", "0"), ("1", "0"), ("3", "-1.0000000001")):
-            self.rejected("vector-plants", "input-factor", "is not taken to zero", null("tanks", *vector), flat)
-        self.rejected("vector-plants", "input-factor", "cannot be checked", null("tanks", "3", "-1", "0"), flat)
+        # What comes closer to zero than the floor of 1e-3 allows is no better.
+        self.accepted("vector-plants", "input-factor", null("tanks", "3", "-1.003"), flat)
+        for vector in (("0", "0"), ("1", "0"), ("3", "-1.004")):
+            self.rejected("vector-plants", "input-factor", "is taken neither to zero", null("tanks", *vector), flat)
+        self.rejected("vector-plants", "input-factor", "has no matrix", null("tanks", "3", "-1", "0"), flat)
         # Of more columns than rows there is always such a vector.
         wide = (flat[0], 'psi = [["0.1", "0.3", "0"], ["0.3", "0.7", "0"]]')
         self.rejected("vector-plants", "input-factor", "has no matrix", null("tanks", "0", "0", "1"), wide)
         self.rejected("strict-feedback", "input-factor", "has no matrix", null("second", "1"))
         _, found = self.judged("vector-plants", "input-factor", null("tanks", "3", "-1"))
         self.assertNotIn(checker.ACCEPTED, [one[3] for one in found if one[0] == "input-factor"], found)
+        # In one state: 0.5 − x1 and 1 are not above 1e-3 where x1 is 0.5, and are where it is 0.6.
+        turns = (flat[0], 'psi = [["0.5 - x1", "0"], ["0", "1"]]')
+        there = lambda state: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "null-vector", "agent": "tanks", "vector": ["1", "0"], "state": list(state)})
+        self.accepted("vector-plants", "input-factor", there(("0.4995", "0")), turns)
+        for state in (("0.498", "0"), ("0", "0.5")):
+            self.rejected("vector-plants", "input-factor", "is taken neither to zero", there(state), turns)
+
+    def test_thrusts_that_start_at_their_floor(self):
+        below = lambda entry: entry.update(answer="violated", proof={"kind": "starts-below"})  # noqa: E731
+        equal = ("parameter_variation = { seed = 4, relative = 0.4 }", "")
+        says = lambda *own: ("[law.thrust]\n", "\n".join(["[law.thrust]", *own, ""]))  # noqa: E731
+        # Each weighs 14.715 N.
+        for own in (("thrust_start_n = 3", "floor.stops_n = 3"), ("thrust_start_n = 1.4715",), ("floor.stops_n = 14.715",)):
+            self.accepted("theorem-4", "nonzero-thrust", below, equal, says(*own))
+        kept = ("thrust_start_n = 0.5", "floor.kept = { thrust_n = 1 }")
+        for own in ((), ("thrust_start_n = 3", "floor.stops_n = 2.9"), ("thrust_start_n = 1.472",), ("floor.stops_n = 14.71",), kept):
+            self.rejected("theorem-4", "nonzero-thrust", "is not so by the text", below, equal, says(*own))
+        self.unchecked("theorem-4", "nonzero-thrust", "is drawn", below, says("thrust_start_n = 0.1"))
 
     def test_matrices_of_inputs_are_bounded_from_below(self):
         """Of two rows |A|² = σ₁² + σ₂² and |det A| = σ₁ σ₂ give the smaller of the singular values."""

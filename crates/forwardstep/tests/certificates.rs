@@ -356,9 +356,14 @@ fn an_equation_that_its_next_state_does_not_move_is_a_witness() {
             assert!(outcome == "rejected" && words.contains("is moved by x2"), "{outcome}: {words}");
         }
     }
-    // What moves weakly, or through a parameter alone, is left to the run.
-    for (first, regressor) in [("x1^2", "x2"), ("1e-9*x2", "x1^2")] {
-        assert_eq!(judged(&with(first, regressor), "input-factor").0, "watched during the run", "{first}");
+    // What moves weakly, or through a parameter, is left to the run, unless it begins below the floor: estimates start at zero.
+    for (first, regressor, answer) in [
+        ("0.01*x2", "x1^2", "watched during the run"),
+        ("0.01*x2", "x2", "watched during the run"),
+        ("x1^2", "x2", "violated"),
+        ("1e-9*x2", "x1^2", "violated"),
+    ] {
+        assert_eq!(judged(&with(first, regressor), "input-factor").0, answer, "{first}, {regressor}");
     }
 }
 

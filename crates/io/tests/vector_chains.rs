@@ -154,7 +154,8 @@ fn eq_43_a_matrix_keeps_its_inverse_where_that_is_shown_and_nowhere_else() {
         (r#"[["2", "sin(x1)"], ["0.5", "-3"]]"#, "1.5", Watched, "at least, which is less"),
         (r#"[["0.1", "0.3"], ["0.3", "0.9"]]"#, "1e-9", Violated, "a matrix without an inverse"),
         (r#"[["0", "0"], ["0", "0"]]"#, "1e-9", Violated, "a matrix without an inverse"),
-        (r#"[["1", "x1"], ["1", "x1"]]"#, "1e-3", Watched, "smallest singular value below"),
+        (r#"[["1", "x1"], ["1", "x1"]]"#, "1e-3", Violated, "starts at 0, where the run ends"),
+        (r#"[["1", "x1"], ["0.1 - x2", "x1"]]"#, "1e-3", Watched, "smallest singular value below"),
     ] {
         let (found, words) = factor(psi, floor);
         assert!(found == answer && words.contains(says), "{psi}: {found:?} {words}");

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::closed_loop;
 use crate::setup::{AxisUnit, RobotSetup};
 
-pub use closed_loop::{probe_balance, probe_reference};
+pub use closed_loop::{probe_balance, probe_reference, singular_start};
 
 /// States at which everything is tried.
 pub const STATES: usize = 32;

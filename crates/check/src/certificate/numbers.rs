@@ -3,6 +3,7 @@
 use forwardstep_core::expression::{Expression, Interval, Intervals, Number};
 use forwardstep_sim::graph::strong_components;
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup};
+use nalgebra::DMatrix;
 use num_rational::BigRational;
 
 use super::producers::Claim;
@@ -103,7 +104,7 @@ pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
             let small = setup.agents.iter().position(|agent| small_factor(agent) == Some(true));
             let null = || {
                 let mut agents = setup.agents.iter().enumerate();
-                agents.find_map(|(index, agent)| Some(Proof::NullVector(index, null_vector(matrix_of(agent)?)?)))
+                agents.find_map(|(index, agent)| Some(Proof::NullVector(index, null_vector(matrix_of(agent)?)?, None)))
             };
             let unmoved = || {
                 let mut agents = setup.agents.iter().enumerate();
@@ -116,7 +117,15 @@ pub(super) fn input_factor(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
                 let mut agents = setup.agents.iter().enumerate();
                 agents.find_map(|(index, agent)| Some(Proof::SmallFactor(index, Some(small_in(agent)?))))
             };
-            small.map(|agent| Proof::SmallFactor(agent, None)).or_else(null).or_else(unmoved).or_else(somewhere)
+            let shortened = || {
+                let mut agents = setup.agents.iter().enumerate();
+                agents.find_map(|(index, agent)| {
+                    let (vector, state) = shortened(agent)?;
+                    Some(Proof::NullVector(index, written(vector), Some(written(state))))
+                })
+            };
+            let constant = small.map(|agent| Proof::SmallFactor(agent, None)).or_else(null).or_else(unmoved);
+            constant.or_else(somewhere).or_else(shortened)
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
@@ -128,7 +137,7 @@ pub(super) fn defined_terms(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         Answer::Holds => Some(Proof::Text),
         Answer::Violated => {
             let (agent, state) = undefined_state(setup)?;
-            Some(Proof::NoValue(agent, state.into_iter().map(Number::written).collect()))
+            Some(Proof::NoValue(agent, written(state)))
         }
         Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
@@ -142,6 +151,33 @@ fn matrix_of(agent: &AgentSetup) -> Option<&[Vec<Expression>]> {
     }
 }
 
+fn written(numbers: Vec<f64>) -> Vec<BigRational> {
+    numbers.into_iter().map(Number::written).collect()
+}
+
+fn start_of(agent: &AgentSetup) -> Vec<f64> {
+    [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat()
+}
+
+/// A vector that the factor of the input of a plant with several axes makes shorter, where the plant starts, than its floor times what it was, and
+/// the start.
+fn shortened(agent: &AgentSetup) -> Option<(Vec<f64>, Vec<f64>)> {
+    let (law, rows, start): (&ChainLaw, _, _) = (agent.law.downcast()?, matrix_of(agent)?, start_of(agent));
+    let within: Vec<Interval> = start.iter().map(|x| Interval::point(*x)).collect();
+    let entries: Vec<Interval> = rows.iter().flatten().map(|entry| entry.fold(&mut Intervals(&within))).collect();
+    let middle = |entry: &Interval| 0.5 * (entry.low + entry.high);
+    let at_start = DMatrix::from_row_iterator(rows.len(), rows.len(), entries.iter().map(middle));
+    let found = at_start.try_svd(false, true, f64::EPSILON, 0)?;
+    let vector: Vec<f64> = found.v_t?.row(found.singular_values.imin()).iter().copied().collect();
+    let square = |x: Interval| Interval::point(x.size()) * Interval::point(x.size());
+    let total = |parts: &mut dyn Iterator<Item = Interval>| parts.fold(Interval::point(0.0), |sum, part| sum + part);
+    let dot = |row: &[Interval]| total(&mut row.iter().zip(&vector).map(|(entry, x)| *entry * Interval::point(*x)));
+    let image = total(&mut entries.chunks_exact(rows.len()).map(|row| square(dot(row))));
+    let floor = square(Interval::point(law.floor));
+    let allowed = floor * total(&mut vector.iter().map(|x| square(Interval::point(*x))));
+    (image.high < allowed.low).then_some((vector, start))
+}
+
 /// A state in which the factor of the input of a chain with one axis is below its floor: the start, or where it is zero.
 fn small_in(agent: &AgentSetup) -> Option<Vec<BigRational>> {
     let (law, model): (&ChainLaw, &ChainModel) = (agent.law.downcast()?, agent.robot.kind.downcast()?);
@@ -150,13 +186,12 @@ fn small_in(agent: &AgentSetup) -> Option<Vec<BigRational>> {
         ChainModel::Cascade(terms) if terms.is_strict() => terms.input(),
         ChainModel::Vector(_) | ChainModel::Cascade(_) => return None,
     };
-    let start = [&agent.start.q[..], &agent.start.dq, &agent.start.rest].concat();
     let small = |state: &Vec<f64>| {
         let within: Vec<Interval> = state.iter().map(|x| Interval::point(*x).with_room(1e-12 * x.abs())).collect();
         state.len() >= factor.variables() && factor.fold(&mut Intervals(&within)).size() < law.floor
     };
-    let state = [Some(start), factor.zero()].into_iter().flatten().find(small)?;
-    Some(state.into_iter().map(Number::written).collect())
+    let state = [Some(start_of(agent)), factor.zero()].into_iter().flatten().find(small)?;
+    Some(written(state))
 }
 
 /// Whether the factor of the input of a chain is a constant below its floor; nothing where it is no constant.

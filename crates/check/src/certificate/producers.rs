@@ -55,6 +55,7 @@ const PRODUCERS: &[(Id, Producer)] = &[
     (Id::ChainAdaptation, gains::definite),
     (Id::SwarmCoupling, gains::swarm),
     (Id::InputFactor, numbers::input_factor),
+    (Id::NonzeroThrust, |_, claim| (claim.answer == Answer::Violated).then_some(Proof::StartsBelow)),
     (Id::BoundedTarget, motions::bounded),
     (Id::BoundedLeader, motions::bounded),
     (Id::SignGain, motions::sign_gain),

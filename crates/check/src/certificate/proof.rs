@@ -88,8 +88,11 @@ pub enum Proof {
     SmallFactor(usize, Option<Vec<BigRational>>),
     /// An agent whose chain has an equation that its next state does not move, and which, from zero.
     Unmoved(usize, usize),
-    /// Witness: the factor of the input of this agent is a constant matrix that takes this vector to zero.
-    NullVector(usize, Vec<BigRational>),
+    /// Witness: in this state, or in all, the matrix that is the factor of the input of this agent makes this vector shorter than its floor
+    /// allows: it takes it to zero, or close.
+    NullVector(usize, Vec<BigRational>, Option<Vec<BigRational>>),
+    /// Witness: by the text a thrust starts at its floor or below.
+    StartsBelow,
     /// The scalar part of the error of an attitude starts with this size at least.
     Apart(BigRational),
     /// Witness: it starts at zero.

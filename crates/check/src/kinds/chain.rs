@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use forwardstep_core::controller::Singularity;
 use forwardstep_core::expression::{Domain, Expression, Graph, Interval, Intervals};
 use forwardstep_core::plant::CascadeTerms;
+use forwardstep_sim::probe::singular_start;
 use forwardstep_sim::push::{Course, Function, Push};
 use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, ChainStep, Law, Setup};
 
@@ -240,13 +242,17 @@ fn is_level(expression: &Expression, along: usize) -> bool {
 
 /// A factor that is below its floor where the run begins.
 fn at_start(setup: &Setup, index: usize, floor: f64, factor: Factor<'_>) -> Option<KindEvidence> {
-    let Factor::Number(input) = factor else { return None };
+    let agent = || Named::of(setup, index);
+    let Factor::Number(input) = factor else {
+        // A singular value, or a product of slopes: by the law itself.
+        let Singularity::Vanishes { value, floor, .. } = singular_start(setup, index).ok()??;
+        return Some(KindEvidence::FactorAtStart { agent: agent(), value, floor });
+    };
     let start = &setup.agents[index].start;
     let state: Vec<Interval> =
         start.q.iter().chain(&start.dq).chain(&start.rest).map(|x| Interval::point(*x)).collect();
     let value = input.fold(&mut Intervals(&state));
     let below = value.low <= value.high && value.low > -floor && value.high < floor;
-    let agent = || Named::of(setup, index);
     below.then(|| KindEvidence::FactorAtStart { agent: agent(), value: 0.5 * (value.low + value.high), floor })
 }
 

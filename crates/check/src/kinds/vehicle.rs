@@ -1,8 +1,9 @@
 //! Vehicles with one thrust whose angular velocity is an input: (44)–(58), Theorems 4 and 5.
 
-use forwardstep_core::controller::Floor;
+use forwardstep_core::controller::{Floor, Singularity};
 use forwardstep_core::expression::Interval;
 use forwardstep_core::reference::polynomial;
+use forwardstep_sim::probe::singular_start;
 use forwardstep_sim::{AgentSetup, RotorcraftModel, Setup, ThrustKind, ThrustLaw, VehicleModel};
 
 use super::bounds::within_bounds;
@@ -135,9 +136,13 @@ fn thrust(setup: &Setup, agents: &[usize]) -> Hypothesis {
         Floor::Stops(_) => None,
     });
     let floors = with_laws(setup, agents).map(|(_, _, law)| law.floor.newtons());
+    let starts = with_laws(setup, agents).find_map(|(index, ..)| {
+        let Singularity::Vanishes { value, floor, .. } = singular_start(setup, index).ok()??;
+        Some(KindEvidence::ThrustAtStart { agent: Named::of(setup, index), thrust_n: value, floor_n: floor })
+    });
     let falls =
         with_laws(setup, agents).find_map(|(index, agent, law)| falls(setup, index, agent, law.floor.newtons()));
-    let evidence = falls.unwrap_or_else(|| match kept {
+    let evidence = starts.or(falls).unwrap_or_else(|| match kept {
         Some((index, floor_n)) => KindEvidence::ThrustKept { agent: Named::of(setup, index), floor_n },
         None => KindEvidence::ThrustFloor { least_n: floors.fold(f64::INFINITY, f64::min) },
     });

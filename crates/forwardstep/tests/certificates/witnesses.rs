@@ -144,6 +144,49 @@ fn terms_and_factors_of_chains_are_refuted_by_a_state() {
     assert_eq!(smooth, ("holds".to_owned(), "accepted".to_owned()));
 }
 
+/// A run that ends before its first step is refuted before it, whatever it is that a law divides by.
+#[test]
+fn regress_what_a_law_divides_by_is_looked_at_where_it_starts() {
+    let one = |robot: &str, position: &str, target: &str, rest: &str| {
+        format!(
+            "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"one\"\n{robot}\nstart.position = {position}\n\
+             target.formulas = {target}\n[reference.tracking]\nroots_per_s = [1, 2]\n{rest}\n"
+        )
+    };
+    let matrix = |psi: &str| format!("robot.vector_chain = {{ order = 1, chi = [\"0\", \"-x2\"], psi = {psi} }}");
+    let tanks = |psi: &str| one(&matrix(psi), "[0.4, -0.2]", "[\"sin(t)\", \"0\"]", "[law.linearising]");
+    violated(&tanks(r#"[["x1 - 0.4", "0"], ["0", "2"]]"#), "input-factor", "null-vector");
+    violated(&tanks(r#"[["1", "2"], ["2", "3.6 + x1"]]"#), "input-factor", "null-vector");
+    violated(&tanks(r#"[["0.001", "0"], ["0", "0.0009"]]"#), "input-factor", "null-vector");
+    assert_eq!(judged(&tanks(r#"[["x1 - 0.5", "0"], ["0", "2"]]"#), "input-factor").0, "watched during the run");
+
+    let chain = |known: &str| {
+        let robot = format!(
+            "robot.pure_feedback = {{ known = [\"{known}\", \"0\"], regressors = [[\"0\"], [\"x1\"]], parameters = [0.1] }}\n\
+             start.higher_states = [0.5]"
+        );
+        one(&robot, "[0.5]", "[\"sin(t)\"]", "[law.adaptive_backstepping]\ngains_per_s = 1\nadaptation_gain = 1")
+    };
+    assert_eq!(judged(&chain("(x2 - 0.5)^3"), "input-factor").0, "violated");
+    assert_eq!(judged(&chain("x2^3"), "input-factor").0, "watched during the run");
+
+    let vehicle = |law: &str| {
+        format!(
+            "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"own\"\ncount = 2\nrobot.vehicle = {{ mass_kg = 2 }}\n\
+             start.position_m = [[0, 0, 0], [1, 0, 0]]\n[reference.consensus]\nroots_per_s = [1, 2, 3]\nexchange = \"position\"\n\
+             [law.thrust]\n{law}\n[network]\n\
+             edges = [[\"own-1\", \"own-2\"], [\"own-2\", \"own-1\"]]\n"
+        )
+    };
+    violated(&vehicle("thrust_start_n = 1"), "nonzero-thrust", "starts-below");
+    violated(&vehicle("floor.stops_n = 20"), "nonzero-thrust", "starts-below");
+    assert_eq!(judged(&vehicle("thrust_start_n = 3"), "nonzero-thrust").0, "watched during the run");
+    assert_eq!(
+        judged(&vehicle("thrust_start_n = 1\nfloor.kept.thrust_n = 2"), "nonzero-thrust").0,
+        "not covered by the paper"
+    );
+}
+
 /// A planar arm of one metre and 0.8 m on a run of 20 s.
 fn reaching(target: &str) -> String {
     format!(

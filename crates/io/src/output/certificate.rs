@@ -161,11 +161,16 @@ impl Names<'_> {
             Proof::Unmoved(agent, equation) => {
                 json!({ "kind": "unmoved", "agent": self.of(*agent), "equation": equation + 1 })
             }
-            Proof::NullVector(agent, vector) => {
+            Proof::NullVector(agent, vector, None) => {
                 json!({ "kind": "null-vector", "agent": self.of(*agent), "vector": numbers(vector) })
+            }
+            Proof::NullVector(agent, vector, Some(state)) => {
+                let (vector, state) = (numbers(vector), numbers(state));
+                json!({ "kind": "null-vector", "agent": self.of(*agent), "vector": vector, "state": state })
             }
             Proof::Apart(least) => json!({ "kind": "apart", "least": decimal(least) }),
             Proof::HalfTurn => json!({ "kind": "half-turn" }),
+            Proof::StartsBelow => json!({ "kind": "starts-below" }),
             Proof::LeftNull(vector) => json!({ "kind": "left-null", "vector": numbers(vector) }),
             Proof::Fades => json!({ "kind": "fades" }),
             Proof::Vanishes { at_s } => json!({ "kind": "vanishes", "at_s": decimal(at_s) }),

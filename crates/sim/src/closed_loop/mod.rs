@@ -55,7 +55,7 @@ pub use assembly::{Assembly, Block};
 pub use error::SetupError;
 pub use injected::{Energy, Powers};
 pub(crate) use members::tracking_law;
-pub use probe::probe_balance;
+pub use probe::{probe_balance, singular_start};
 pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;

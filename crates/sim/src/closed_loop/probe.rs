@@ -1,6 +1,9 @@
-//! The Lyapunov balance that a law states, tried along short runs from random starts.
+//! What is seen of an agent by itself: the Lyapunov balance that its law states, tried along short runs from random starts, and whether the
+//! law can be evaluated where it starts.
 
 use std::sync::Arc;
+
+use forwardstep_core::controller::Singularity;
 
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
@@ -30,18 +33,7 @@ const ZERO: f64 = 1e-9;
 /// # Errors
 /// [`SetupError`] when the law cannot build the agent.
 pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
-    let Some(mut own) = setup.agents.get(index).cloned() else { return Ok(Probe::default()) };
-    own.enforce_limits = false;
-    own.pushes.clear();
-    let mut alone = Setup {
-        agents: vec![own],
-        reference: alone_under(setup, index),
-        exchange: setup.exchange,
-        network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
-        time: setup.time.clone(),
-        solver: Solver { balance: true, ..setup.solver },
-        control: None,
-    };
+    let Some(mut alone) = alone(setup, index) else { return Ok(Probe::default()) };
     let (mut draws, mut probe) = (Draws::new(), Probe::default());
     let stated = alone.agents[0].start.clone();
     let sums = message_len(&alone);
@@ -68,6 +60,41 @@ pub fn probe_balance(setup: &Setup, index: usize) -> Result<Probe, SetupError> {
         }
     }
     Ok(probe)
+}
+
+/// What the law of agent `index` divides by where it starts, if that is closer to zero than it may be: a run ends there before it begins.
+///
+/// # Errors
+/// [`SetupError`] when the law cannot build the agent. Whether its start has a meaning is for who simulates it to say.
+pub fn singular_start(setup: &Setup, index: usize) -> Result<Option<Singularity>, SetupError> {
+    let Some(alone) = alone(setup, index) else { return Ok(None) };
+    let mut block = alone.agents[0].law.block(&Assembly::new(&alone, &[0]))?;
+    let columns = &mut *block.0;
+    let sums = vec![0.0; message_len(&alone)];
+    let heard = Inputs { degree: &[0.0], sums: &sums, external: None };
+    let mut x = Vec::new();
+    columns.append_start(&alone.agents, &mut x);
+    if columns.start(&alone.agents, &mut x, heard.degree, heard.sums).is_err() {
+        return Ok(None);
+    }
+    columns.rates(0.0, &x, heard, &mut vec![0.0; columns.state_len()]);
+    Ok(columns.trouble(&x).map(|(_, singularity)| singularity))
+}
+
+/// Agent `index` with nobody to hear and nothing that acts on it, in continuous time and with its balance.
+fn alone(setup: &Setup, index: usize) -> Option<Setup> {
+    let mut own = setup.agents.get(index)?.clone();
+    own.enforce_limits = false;
+    own.pushes.clear();
+    Some(Setup {
+        agents: vec![own],
+        reference: alone_under(setup, index),
+        exchange: setup.exchange,
+        network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
+        time: setup.time.clone(),
+        solver: Solver { balance: true, ..setup.solver },
+        control: None,
+    })
 }
 
 /// What leads the agent when it is by itself. It then has the number zero, which must not be taken for that of the leader.

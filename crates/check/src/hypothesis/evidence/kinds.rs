@@ -134,7 +134,17 @@ pub enum KindEvidence {
         /// Its floor.
         floor: f64,
     },
-    /// The factor of the input is below its floor where the run begins.
+    /// A thrust starts at its floor or below.
+    ThrustAtStart {
+        /// Whose.
+        agent: Named,
+        /// The thrust, N.
+        thrust_n: f64,
+        /// Its floor, N.
+        floor_n: f64,
+    },
+    /// What a law divides by is below its floor where the run begins: the factor of the input, the smallest singular value of a matrix, or a
+    /// product of slopes.
     FactorAtStart {
         /// Whose.
         agent: Named,
@@ -334,6 +344,7 @@ impl KindEvidence {
             | KindEvidence::HalfTurn
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::FactorAtStart { .. }
+            | KindEvidence::ThrustAtStart { .. }
             | KindEvidence::FactorSingular { .. }
             | KindEvidence::Unmoved { .. }
             | KindEvidence::Probed { probe: Probe { found: Some(_), .. }, .. } => Answer::Violated,
@@ -360,6 +371,7 @@ impl KindEvidence {
             | KindEvidence::NoTip
             | KindEvidence::FactorBelowFloor { .. }
             | KindEvidence::FactorAtStart { .. }
+            | KindEvidence::ThrustAtStart { .. }
             | KindEvidence::FactorSingular { .. }
             | KindEvidence::Unmoved { .. }
             | KindEvidence::LengthsOutsideRegressor(_)

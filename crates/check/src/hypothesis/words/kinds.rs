@@ -53,8 +53,15 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             format!("that of {} is {} for ever, which is less than its floor of {floor}", agent.name, rounded(*value))
         }
         KindEvidence::FactorAtStart { agent, value, floor } => {
-            format!("that of {} starts at {}, where the run ends: its floor is {floor}", agent.name, rounded(*value))
+            let value = rounded(*value);
+            format!("what the law of {} divides by starts at {value}, where the run ends: its floor is {floor}", agent.name)
         }
+        KindEvidence::ThrustAtStart { agent, thrust_n, floor_n } => format!(
+            "that of {} starts at {} N, where the run ends: its floor is {} N",
+            agent.name,
+            rounded(*thrust_n),
+            rounded(*floor_n)
+        ),
         KindEvidence::Unmoved { agent, equation } => format!(
             "x{} does not move equation {} of {}: its slope is 0 for ever",
             equation + 2,

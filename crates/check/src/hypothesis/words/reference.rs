@@ -56,8 +56,8 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
              positive"
         ),
         ReferenceEvidence::NoDesign => {
-            "agents hear each other in another way than in (24) and (a5), and nothing is known of where that leads over graphs that switch and \
-             links that are late"
+            "by its roots the way in which agents hear each other is neither (24) nor (a5), and nothing is known of where others lead over graphs \
+             that switch and links that are late"
                 .into()
         }
         ReferenceEvidence::Tried { runs, found: None } => format!(

@@ -87,12 +87,18 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
             format!("`floor` below {} for {}", rounded_down(value.abs()), agent.name)
         }
         KindEvidence::FactorAtStart { agent, value, floor } => {
-            let start = format!("a start of {} at which |ψ| exceeds {}", agent.name, rounded_up(*floor));
+            let start = format!("a start of {} at which that exceeds {} in magnitude", agent.name, rounded_up(*floor));
             match value.abs() {
                 0.0 => start,
                 size => format!("`floor` below {} for {}, or {start}", rounded_down(size), agent.name),
             }
         }
+        KindEvidence::ThrustAtStart { agent, thrust_n, floor_n } => format!(
+            "`law.thrust.thrust_start_n` above {} for {}, or a `floor` below {}",
+            rounded_up(*floor_n),
+            agent.name,
+            rounded_down(*thrust_n)
+        ),
         KindEvidence::Unmoved { agent, equation } => {
             format!("a term of x{} in equation {} of {}, such as x{0} itself", equation + 2, equation + 1, agent.name)
         }
