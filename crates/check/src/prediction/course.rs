@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, Recording, Setup, Signal, ThrustLaw};
+use forwardstep_sim::{
+    Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, RecordAt, Recording, Setup, Signal, ThrustLaw,
+};
 use thiserror::Error;
 
 use crate::agreement::{NoPrediction, predict};
@@ -170,6 +172,7 @@ pub fn course_within(
         return Err(NoCourse::Axes);
     }
     let before = told_before(setup, &ideal);
+    let (ideal, parts) = with_enough_rows(ideal);
     let recording = completed(&ideal, before.as_deref(), &mut work, observer)?;
     let disagreement = disagreement(&recording, axes);
     let within = match before {
@@ -180,7 +183,30 @@ pub fn course_within(
     let settled = settled(&recording.t_s, &disagreement);
     let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
     let (start, moved_by_s) = (StartError::of(setup), moved_by_s(setup));
-    Ok(Course { disagreement, value, within, settled, peak_torques, start, moved_by_s, t_s: recording.t_s })
+    let last = recording.t_s.len().saturating_sub(1);
+    let of_run = |all: Vec<f64>| -> Vec<f64> {
+        let rows = all.into_iter().enumerate().filter(|(row, _)| row % parts == 0 || *row == last);
+        rows.map(|(_, value)| value).collect()
+    };
+    let (t_s, disagreement) = (of_run(recording.t_s), of_run(disagreement));
+    Ok(Course { disagreement, value, within, settled, peak_torques, start, moved_by_s, t_s })
+}
+
+/// Rows of a course at least, since what settles, and what peaks, does so between the rows of a run that has few; and rows times axes that are
+/// not exceeded for that.
+const LEAST_ROWS: f64 = 1000.0;
+const MOST_ENTRIES: f64 = 1e6;
+
+/// The same setup with so many parts of each interval between two rows that there are enough, and how many.
+fn with_enough_rows(mut ideal: Setup) -> (Setup, usize) {
+    let axes: usize = ideal.agents.iter().map(|agent| agent.robot.axes.len()).sum();
+    let time = &mut ideal.time;
+    let parts = (LEAST_ROWS.min(MOST_ENTRIES / axes as f64) * time.record_every_s / time.end_s).ceil();
+    if time.record_at != RecordAt::Intervals || !(parts > 1.0) {
+        return (ideal, 1);
+    }
+    time.record_every_s /= parts;
+    (ideal, parts as usize)
 }
 
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.

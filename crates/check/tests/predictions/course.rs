@@ -240,6 +240,24 @@ fn every_reason_for_no_course_is_the_one_that_is_said() {
 }
 
 #[test]
+fn regress_what_settles_and_peaks_between_two_rows_is_that_of_many() {
+    let many = arms(Exchange::PositionVelocity, 2);
+    let mut few = many.clone();
+    few.time.record_every_s = 25.0;
+    let (many, few) = (predicted(&many), predicted(&few));
+    assert_eq!(few.t_s, [0.0, 25.0, 50.0, 60.0]);
+    for (t_s, disagreement) in few.t_s.iter().zip(&few.disagreement) {
+        let row = many.t_s.iter().position(|many_s| (many_s - t_s).abs() < 1e-6).unwrap();
+        assert!((many.disagreement[row] - disagreement).abs() < 1e-9, "{t_s}: {disagreement}");
+    }
+    let [settled, known] = [&few, &many].map(|course| course.settled.time_s().unwrap());
+    assert!((settled - known).abs() < 0.01 * known, "{settled} {known}");
+    for (peak, known) in few.peak_torques.iter().zip(&many.peak_torques) {
+        assert!((peak.value - known.value).abs() < 0.01 * known.value, "{peak:?} {known:?}");
+    }
+}
+
+#[test]
 fn what_has_no_effect_while_everybody_follows_is_left_out() {
     let plain = arms(Exchange::Position, 2);
     let mut busy = plain.clone();
