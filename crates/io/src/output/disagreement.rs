@@ -179,7 +179,7 @@ impl DisagreementSeries {
                     high[row] = greater(high[row], q);
                 }
             }
-            per_axis.push(low.iter().zip(&high).map(|(low, high)| high - low).collect::<Vec<_>>());
+            per_axis.push(low.iter().zip(&high).map(|(low, high)| apart(*low, *high)).collect::<Vec<_>>());
         }
         Ok(Self::largest(rows, per_axis))
     }
@@ -215,6 +215,16 @@ impl DisagreementSeries {
     }
 }
 
+/// Up to here nobody asks for a difference, rad or m.
+const FINEST: f64 = 1e-9;
+
+/// The difference of two positions. Of numbers so large that their last digit is coarser than what anybody asks for, it is not less than that
+/// digit: those that run away together have not agreed because they are rounded to the same number.
+fn apart(low: f64, high: f64) -> f64 {
+    let digit = f64::EPSILON * greater(low.abs(), high.abs());
+    if digit > FINEST && digit.is_finite() { greater(high - low, digit) } else { high - low }
+}
+
 /// The greater of two numbers, NaN as soon as one is.
 pub(super) fn greater(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
@@ -242,5 +252,15 @@ mod tests {
     fn what_is_left_decides_whether_agreement_was_reached() {
         let measured = |last: f64| Disagreement::Measured { initial: 1.0, last, largest: 2.0 }.is_agreement();
         assert_eq!([0.0, 0.02, 0.021, 2.0, f64::NAN].map(measured), [true, true, false, false, false]);
+    }
+
+    #[test]
+    fn regress_numbers_that_run_away_together_are_as_far_apart_as_they_are_coarse() {
+        assert_eq!([apart(1e25, 1e25), apart(-1e25, -1e25)], [f64::EPSILON * 1e25; 2]);
+        assert_eq!(apart(1e25, 2e25), 1e25);
+        assert_eq!([apart(3.0, 3.0), apart(1e6, 1e6), apart(-2.0, 1.5)], [0.0, 0.0, 3.5]);
+        assert!(apart(1e7, 1e7) > FINEST);
+        assert!([[1.0, f64::NAN], [f64::NAN, 1e25]].iter().all(|[low, high]| apart(*low, *high).is_nan()));
+        assert_eq!(apart(f64::NEG_INFINITY, 1.0), f64::INFINITY);
     }
 }
