@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use forwardstep::check::manipulability::{LowFrequency, Manipulability, Measured, NoManipulability, Trial, measure};
+use forwardstep::io::output::names;
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{Adaptive, Setup};
@@ -45,14 +46,14 @@ fn finish(options: &ManipulabilityOptions, kinds: &Kinds, console: &mut Console)
             let mut setup = scenario.setup.clone();
             setup.agents.iter_mut().for_each(|agent| agent.manipulability = *lambda);
             let theory = Manipulability::of(&setup, trial.agent, trial.axis)
-                .map_err(|error| complain(&Plain::new(error)))?
+                .map_err(|error| refuse(&setup, &error))?
                 .low_frequency();
             let go_on = |_| if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
             let found = measure(&setup, trial, &mut { go_on });
             if let Some(status) = stop.asked() {
                 return Err(status);
             }
-            let found = found.map_err(|error| complain(&Plain::new(error)))?;
+            let found = found.map_err(|error| refuse(&setup, &error))?;
             let cells = cells(*lambda, theory, found);
             if options.table {
                 let adapts = setup.agents[trial.agent].law.is::<Adaptive>();
@@ -67,6 +68,15 @@ fn finish(options: &ManipulabilityOptions, kinds: &Kinds, console: &mut Console)
         }
     }
     Ok(Status::Fine)
+}
+
+/// Why there is no transfer, with agents by name.
+#[derive(Debug, Error)]
+#[error("{0}")]
+struct NoTransfer(String);
+
+fn refuse(setup: &Setup, error: &dyn std::error::Error) -> Status {
+    complain(&Plain::new(NoTransfer(names::reason(setup, error))))
 }
 
 /// Who is pushed.

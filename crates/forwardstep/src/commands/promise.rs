@@ -7,7 +7,7 @@ use forwardstep::check::prediction::{COURSE_WORK, NoRate, course_within, guarant
 use forwardstep::check::{
     self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report, Source,
 };
-use forwardstep::io::output::Predictions;
+use forwardstep::io::output::{Predictions, names};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::{Progress, Setup};
 
@@ -91,7 +91,10 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     }
     match agreement {
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
-        Err(reason) => console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}")),
+        Err(error) => {
+            let reason = names::reason(&scenario.setup, error);
+            console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}"));
+        }
     }
     show_practical(practical, console);
     for notice in &scenario.notices {

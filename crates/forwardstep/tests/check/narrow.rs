@@ -169,7 +169,20 @@ fn regress_a_factor_of_the_input_that_is_zero_where_the_run_begins_is_refuted() 
     };
     assert_eq!(pure("0", "x1^2"), "violated");
     assert_eq!(pure("x2 + 0.2*x2^3", "x1^2"), "watched during the run");
-    assert_eq!(pure("2*x1", "x2"), "watched during the run");
+    // By a parameter whose estimate starts at zero.
+    assert_eq!(pure("2*x1", "x2"), "violated");
+}
+
+#[test]
+fn regress_reasons_for_no_prediction_name_agents() {
+    let pushed = "[[external_wrenches]]\non = [\"m-2\"]\nby.force_n = [\"2\"]\n";
+    for text in [masses(pushed), masses(&pushed.replace("\"2\"", "\"sin(t)\""))] {
+        let folder = with(&text);
+        let said = stdout(&forwardstep(&folder, &["check", "two.toml"]).code(1));
+        assert!(said.contains("predicted agreement: none, since m-2 is pushed for ever"), "{said}");
+        let findings = stdout(&forwardstep(&folder, &["check", "two.toml", "--json"]).code(1));
+        assert!(findings.contains("m-2 is pushed for ever") && !findings.contains("agent number"), "{findings}");
+    }
 }
 
 #[test]

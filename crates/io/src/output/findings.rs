@@ -4,6 +4,7 @@ use forwardstep_check::{Id, NoPrediction, Practical, Prediction, Report};
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
 
+use super::names;
 use super::practical::PracticalVerdicts;
 use super::prediction::Predictions;
 use super::verdicts::Verdicts;
@@ -98,7 +99,7 @@ impl Findings {
                 Ok(Prediction { value, error_bound, .. }) => {
                     PredictedAgreement::Value { value: value.clone(), error_bound: error_bound.clone() }
                 }
-                Err(reason) => PredictedAgreement::NoneSince(reason.to_string()),
+                Err(error) => PredictedAgreement::NoneSince(names::reason(&scenario.setup, error)),
             },
             prediction,
             notices: scenario.notices.iter().map(ToString::to_string).collect(),

@@ -2,11 +2,12 @@
 //! stays true.
 
 use forwardstep_check::prediction::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat};
+use forwardstep_sim::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number;
 use super::report::text::superscript;
+use super::{names, number};
 
 /// How much of the spread of all cascaded variables, and of all messages on their way, is left when, for certain and whatever the
 /// start, for s ≡ 0; or why that is not shown.
@@ -78,10 +79,10 @@ pub struct GuaranteedClass {
 }
 
 impl Guarantee {
-    pub(super) fn of(found: &Result<GuaranteedRate, NoGuaranteedRate>, end_s: f64) -> Guarantee {
+    pub(super) fn of(setup: &Setup, found: &Result<GuaranteedRate, NoGuaranteedRate>) -> Guarantee {
         match found {
-            Ok(rate) => Guarantee::Found(GuaranteeFound::of(rate, end_s)),
-            Err(reason) => Guarantee::NoneSince(reason.to_string()),
+            Ok(rate) => Guarantee::Found(GuaranteeFound::of(rate, setup.time.end_s)),
+            Err(error) => Guarantee::NoneSince(names::reason(setup, error)),
         }
     }
 

@@ -16,6 +16,22 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
 }
 
+/// A reason that [`forwardstep_check`] gives, which knows agents by their number, with their names.
+pub fn reason(setup: &Setup, error: &dyn std::error::Error) -> String {
+    const NUMBERED: &str = "agent number ";
+    let said = error.to_string();
+    let mut parts = said.split(NUMBERED);
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |named, part| {
+        let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
+        let (number, rest) = part.split_at(digits);
+        match number.parse::<usize>().ok().and_then(|number| setup.agents.get(number.checked_sub(1)?)) {
+            Some(agent) => format!("{named}{}{rest}", agent.name),
+            None => format!("{named}{NUMBERED}{part}"),
+        }
+    })
+}
+
 /// More agents are not named one by one.
 const MOST_NAMES: usize = 8;
 

@@ -152,7 +152,7 @@ impl Predictions {
             Err(
                 NoCourse::Ideal(NoIdeal::Leader | NoIdeal::Targets) | NoCourse::Unfinished(Unfinished::Interrupted),
             ) => return None,
-            Err(reason) => PredictedCourse::NoneSince(reason.to_string()),
+            Err(error) => PredictedCourse::NoneSince(names::reason(setup, error)),
             Ok(course) => PredictedCourse::Found(CourseFound::of(course)),
         };
         let rate = match (rate, period) {
@@ -163,8 +163,12 @@ impl Predictions {
                 wavers: found.wavers,
                 periods: found.periods,
             },
-            (Err(reason), Some(Err(other))) => PredictedRate::NoneSince(format!("{reason}, and {other}")),
-            (Err(reason), None) => PredictedRate::NoneSince(reason.to_string()),
+            (Err(error), Some(Err(other))) => PredictedRate::NoneSince(format!(
+                "{}, and {}",
+                names::reason(setup, error),
+                names::reason(setup, other)
+            )),
+            (Err(error), None) => PredictedRate::NoneSince(names::reason(setup, error)),
             (Ok(rate), _) => PredictedRate::Roots {
                 root_per_s: rate.root_per_s,
                 multiplicity: rate.multiplicity,
@@ -174,7 +178,7 @@ impl Predictions {
                 settled_s: rate.settled.time_s(),
             },
         };
-        Some(Predictions { course, rate, guarantee: Some(Guarantee::of(guaranteed, setup.time.end_s)) })
+        Some(Predictions { course, rate, guarantee: Some(Guarantee::of(setup, guaranteed)) })
     }
 
     /// The course, if there is one.
