@@ -37,7 +37,7 @@ use thiserror::Error;
 
 use crate::conserved::Conserved;
 use crate::fixed::{NotFixed, fixed};
-use crate::instance::designed;
+use crate::instance::{designed, is_consensus};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
 use crate::prediction::{NoIdeal, family_start};
@@ -192,7 +192,7 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.all_track() || !setup.agents.iter().all(conserves) {
         return Err(NoPrediction::Law);
     }
-    if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
+    if !is_consensus(setup) {
         return Err(NoPrediction::Own);
     }
     if setup.control.is_some() {

@@ -74,6 +74,11 @@ fn hears(desired: &Desired, roots: &RootSet) -> bool {
     }
 }
 
+/// Whether what leads is (24) or (a5), of which (aa10) and (a1) are the first orders, or (3) or (23).
+pub(crate) fn is_consensus(setup: &Setup) -> bool {
+    setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()
+}
+
 /// `setup` with the design in the place of desired dynamics that are one; `None` where they are none.
 pub(crate) fn designed(setup: &Setup) -> Option<Setup> {
     let (design, roots) = design(setup)?;

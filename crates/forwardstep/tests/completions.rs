@@ -19,7 +19,9 @@ fn every_command_has_a_manual_page() {
         let page = std::fs::read_to_string(folder.path().join(format!("{name}.1"))).unwrap();
         assert!(page.contains(&format!(".TH {name} 1")), "{page}");
     }
-    forwardstep(&["man", &format!("{path}/none")]).code(2);
+    let refused = forwardstep(&["man", &format!("{path}/none")]).code(2);
+    let said = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(said.contains("cannot write manual pages into") && said.contains("/none`"), "{said}");
 }
 
 #[test]

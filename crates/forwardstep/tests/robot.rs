@@ -156,7 +156,7 @@ fn mistakes_about_a_robot_are_status_two_and_write_nothing() {
     write("nan.json", "{ \"turn\": { \"q\": NaN } }");
     write("broken.urdf", "<robot name=\"r\">\n  <link>\n</robot>");
     let before = names(folder.path());
-    let cases: [(&[&str], &str); 12] = [
+    let cases: [(&[&str], &str); 14] = [
         (&["robot", "ur5"], "did you mean `ur5e`?"),
         (&["robot", "tre.urdf"], "did you mean `tree.urdf`?"),
         (&["robot", "broken.urdf"], "broken.urdf:"),
@@ -165,6 +165,8 @@ fn mistakes_about_a_robot_are_status_two_and_write_nothing() {
         (&["robot", "ur5e", "--lock", "elbow_jont=1"], "did you mean `elbow_joint`?"),
         (&["robot", "ur5e", "--lock", "elbow_joint=inf"], "must be finite"),
         (&["robot", "tree.urdf", "--at", "none.json"], "cannot read `none.json`"),
+        (&["robot", "tree.urdf", "--at", "slop.json"], "did you mean `slip.json`?"),
+        (&["robot", "tree.urdf", "--at", "."], "name a JSON file with the state"),
         (&["robot", "tree.urdf", "--at", "slip.json"], "slip.json:2:3: the robot has no moving joint `a_lef`"),
         (&["robot", "tree.urdf", "--at", "huge.json"], "which is not finite"),
         (&["robot", "tree.urdf", "--at", "broken.json"], "broken.json:1:21: not well-formed JSON"),

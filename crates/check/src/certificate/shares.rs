@@ -3,9 +3,10 @@
 use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
-use forwardstep_sim::reference::{Consensus, PureIntegral};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
+
+use crate::instance::is_consensus;
 
 /// Agents among which shares are eliminated in rational numbers.
 const MOST_ROOTS: usize = 40;
@@ -14,7 +15,7 @@ const MOST_ROOTS: usize = 40;
 ///
 /// On the one closed class by elimination without subtraction (Grassmann, Taksar and Heyman), zero elsewhere.
 pub(super) fn influence(setup: &Setup) -> Option<Vec<BigRational>> {
-    if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
+    if !is_consensus(setup) {
         return None;
     }
     let (edges, vertices) = (setup.network.schedule.constant_graph()?, setup.network.agents);

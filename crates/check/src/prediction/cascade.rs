@@ -15,12 +15,12 @@
 
 use std::collections::VecDeque;
 
-use forwardstep_sim::reference::{Consensus, PureIntegral};
+use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustLaw};
 use thiserror::Error;
 
 use crate::graphs::laplacian_stays;
-use crate::instance::designed;
+use crate::instance::{designed, is_consensus};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
 
 /// The interval of all cascaded variables and of all messages on their way, row by row.
@@ -138,7 +138,7 @@ impl CascadeSpread {
 
 /// Whether the variables are defined and their interval never grows.
 pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
-    if !(setup.reference.is::<Consensus>() || setup.reference.is::<PureIntegral>()) {
+    if !is_consensus(setup) {
         return Err(NoCascade::Reference);
     }
     if setup.reference.is::<PureIntegral>() && !laplacian_stays(setup) {

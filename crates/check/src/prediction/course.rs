@@ -202,7 +202,7 @@ fn with_enough_rows(mut ideal: Setup) -> (Setup, usize) {
     let axes: usize = ideal.agents.iter().map(|agent| agent.robot.axes.len()).sum();
     let time = &mut ideal.time;
     let parts = (LEAST_ROWS.min(MOST_ENTRIES / axes as f64) * time.record_every_s / time.end_s).ceil();
-    if time.record_at != RecordAt::Intervals || !(parts > 1.0) {
+    if time.record_at != RecordAt::Intervals || parts.is_nan() || parts <= 1.0 {
         return (ideal, 1);
     }
     time.record_every_s /= parts;

@@ -16,7 +16,7 @@ use forwardstep_core::attitude::normalized;
 use forwardstep_core::controller::Jet;
 use forwardstep_core::plant::Vehicle;
 use forwardstep_core::robot::PointMass;
-use forwardstep_sim::reference::{Consensus, PureIntegral};
+use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{
     AgentSetup, Axis, ChainLaw, ChainModel, Exchange, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup,
     Solver, Start, ThrustLaw, VehicleModel,
@@ -24,7 +24,7 @@ use forwardstep_sim::{
 use thiserror::Error;
 
 use crate::conserved::Tally;
-use crate::instance::designed;
+use crate::instance::{designed, is_consensus};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
 
 /// Why there is no setup in which everybody follows its reference exactly.
@@ -85,7 +85,7 @@ pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
     if reference.is::<forwardstep_sim::reference::Backstepping>() {
         return Err(NoIdeal::Backstepping);
     }
-    if !(reference.is::<Consensus>() || reference.is::<PureIntegral>()) {
+    if !is_consensus(setup) {
         return Err(NoIdeal::Own);
     }
     let integral = reference.is::<PureIntegral>();

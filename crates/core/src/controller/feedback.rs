@@ -240,6 +240,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::controller::JetsBuffer;
     use crate::plant::VectorField;
 
     /// ẋ = u with an integrator: χ̇ = x − x_d, u = −x − χ.
@@ -274,6 +275,34 @@ mod tests {
             let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut shown };
             law.evaluate(&mut (), given(target), &state, asked).unwrap();
             assert_eq!((input, d_state, shown), ([-3.25], [error], [error]));
+        }
+    }
+
+    #[test]
+    fn a_law_may_ask_for_more_derivatives_of_a_target_than_four() {
+        let plant = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], |_, u, dx| dx[0] = u[0]);
+        // u = x_d⁽⁶⁾, and nothing without a target.
+        let law = |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
+            asked.input[0] = given.target_in_full(0).get(6).copied().unwrap_or(-1.0);
+        };
+        let balance = |_: Truth<'_, _>, _: FeedbackInput<'_>, _: &[f64]| Balance { value: 0.0, dissipation: 0.0 };
+        let law = Feedback::new(&plant, [], law, balance);
+        assert_eq!(law.target_derivatives(), 4);
+        assert_eq!(law.clone().with_target_derivatives(2).target_derivatives(), 4);
+        let law = law.with_target_derivatives(6);
+        assert_eq!(law.target_derivatives(), 6);
+        let mut target = JetsBuffer::new(1, 6);
+        target.iter_mut().for_each(|jet| jet[6] = 0.7);
+        for (target, expected) in [(target.jets(), 0.7), (Jets::NONE, -1.0)] {
+            let given = ControllerInput {
+                measured: law.see(&[3.0]).unwrap(),
+                heard: Heard::new(&[], &[0.0], 1).unwrap(),
+                target,
+            };
+            let mut input = [0.0];
+            let asked = ControllerOutput { input: &mut input, d_state: &mut [], shown: &mut [] };
+            law.evaluate(&mut (), given, &[], asked).unwrap();
+            assert_eq!(input, [expected]);
         }
     }
 

@@ -1,9 +1,12 @@
 //! `forwardstep man`
 
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
 use clap::CommandFactory;
 use clap_mangen::{Man, generate_to};
+use forwardstep::io::shown;
+use thiserror::Error;
 
 use crate::arguments::Arguments;
 use crate::console::{Console, Plain, complain};
@@ -25,6 +28,16 @@ pub(crate) fn man(folder: Option<&Path>, console: &mut Console) -> Status {
     };
     match generate_to(command, folder) {
         Ok(()) => Status::Fine,
-        Err(error) => complain(&Plain::with_help(error, Some("the folder must exist, and files must fit into it"))),
+        Err(source) => {
+            let error = NoPages { folder: folder.to_owned(), source };
+            complain(&Plain::with_help(error, Some("the folder must exist, and files must fit into it")))
+        }
     }
+}
+
+#[derive(Debug, Error)]
+#[error("cannot write manual pages into `{}`: {source}", shown(folder))]
+struct NoPages {
+    folder: PathBuf,
+    source: io::Error,
 }

@@ -104,8 +104,9 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             format!("is {} where it starts, and the law divides by it; start elsewhere", about(value + 0.0))
         }
         BreakdownCause::Vanished { value, floor } => format!(
-            "is {value:.3e}: the law divides by it, and it must stay away from zero by {floor}; start elsewhere, or choose \
-             slower gains"
+            "is {value:.3e}: the law divides by it, and it must stay away from zero by {}; start elsewhere, or choose \
+             slower gains",
+            floor.abs()
         ),
         BreakdownCause::PositionLimit { value, limits: [low, high] } => {
             format!("left its limits [{low}, {high}]: it is {value}")

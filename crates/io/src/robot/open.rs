@@ -31,6 +31,14 @@ pub enum OpenRobotError {
         /// Why not.
         reason: ReadError,
     },
+    /// A file for a state that cannot be read.
+    #[error("cannot read `{}`: {reason}", shown(path))]
+    StateFile {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: ReadError,
+    },
     /// A mistake in the robot, or in what was asked of it.
     #[error(transparent)]
     Robot(Box<InputError<UrdfProblem>>),
@@ -45,7 +53,7 @@ impl OpenRobotError {
         match self {
             OpenRobotError::Robot(error) => Some(error.as_ref()),
             OpenRobotError::State(error) => Some(error.as_ref()),
-            OpenRobotError::Unknown { .. } | OpenRobotError::File { .. } => None,
+            OpenRobotError::Unknown { .. } | OpenRobotError::File { .. } | OpenRobotError::StateFile { .. } => None,
         }
     }
 }
@@ -58,10 +66,13 @@ impl Diagnostic for OpenRobotError {
                 let text = choose(name, "shipped robots are", &shipped);
                 Some(Box::new(format!("{text}; for a file of your own give its path, such as `my-arm.urdf`")))
             }
-            OpenRobotError::File { path, reason: ReadError::Missing } => {
-                let known = neighbours(path, "urdf");
-                let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-                (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
+            OpenRobotError::File { path, reason: ReadError::Missing } => among(path, "urdf"),
+            OpenRobotError::StateFile { path, reason: ReadError::Missing } => among(path, "json"),
+            OpenRobotError::StateFile { reason, .. } => {
+                let help = reason
+                    .help()
+                    .unwrap_or("name a JSON file with the state, as { \"joint\": { \"q\": 0.1, \"dq\": 0 } }");
+                Some(Box::new(help))
             }
             OpenRobotError::File { reason, .. } => {
                 let help = reason.help().unwrap_or("name the URDF itself: XML that begins with <robot name=\"…\">");
@@ -82,6 +93,13 @@ impl Diagnostic for OpenRobotError {
     fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
         self.inner()?.related()
     }
+}
+
+/// Which files there are in the place of one that is missing.
+fn among(path: &Path, extension: &str) -> Option<Box<dyn fmt::Display>> {
+    let known = neighbours(path, extension);
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    (!known.is_empty()).then(|| Box::new(choose(name, "in that folder:", &known)) as Box<_>)
 }
 
 /// Opens the URDF at this path, else the shipped robot of this name.
@@ -112,7 +130,7 @@ fn unreadable(name_or_path: &str, reason: ReadError) -> OpenRobotError {
 /// # Errors
 /// [`OpenRobotError`] when the file cannot be read or has a mistake.
 pub fn open_state(path: &Path, robot: &UrdfRobot) -> Result<JointState, OpenRobotError> {
-    let text = read_text(path).map_err(|reason| OpenRobotError::File { path: path.to_owned(), reason })?;
+    let text = read_text(path).map_err(|reason| OpenRobotError::StateFile { path: path.to_owned(), reason })?;
     let joints: Vec<&str> = robot.robot.axes.iter().map(|axis| axis.name.as_str()).collect();
     let source = SourceText::new(path.display().to_string(), text);
     read_state(&source, &joints).map_err(|error| OpenRobotError::State(Box::new(error)))

@@ -144,19 +144,6 @@ pub enum NoticeKind {
     },
 }
 
-impl NoticeKind {
-    /// Whether the file probably does not say what its author meant.
-    pub fn is_suspicious(&self) -> bool {
-        !matches!(
-            self,
-            NoticeKind::Ignored { .. }
-                | NoticeKind::AxisDefault { .. }
-                | NoticeKind::FrictionIgnored { .. }
-                | NoticeKind::HeldByBase { .. }
-        )
-    }
-}
-
 impl fmt::Display for NoticeKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
