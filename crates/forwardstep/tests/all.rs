@@ -25,6 +25,7 @@ mod own_reference;
 mod pushes;
 mod report;
 mod robot;
+mod rows;
 mod safe;
 mod shipped;
 mod stepped;

@@ -61,8 +61,9 @@ fn every_kind_names_its_columns_and_their_units() {
             "strict-feedback",
             &[
                 ("second.q.1", "1"),
-                ("second.dz.1", "1/s^2"),
-                ("second.s.2", "1/s"),
+                ("second.z.1", "1"),
+                ("second.dz.1", "1/s"),
+                ("second.s.2", "1"),
                 ("second.x2.1", "1"),
                 ("second.tau.1", "1"),
                 ("second.divisor", "1"),

@@ -342,8 +342,18 @@ pub struct Actuators {
     /// Fastest change of the torque of every axis, N m/s or N/s.
     pub torque_rate_limit: Option<Vec<f64>>,
     /// Step of the torques, N m or N; zero for none. Torques are limited, then rounded: they keep their limit, and change by
-    /// at most half a step more than their rate allows.
+    /// at most a step more than their rate allows.
     pub torque_quantum: f64,
+}
+
+impl Actuators {
+    /// The largest torque that is given under `limit`, N m or N: of torques that are rounded the last step that lies within it.
+    pub fn largest_within(&self, limit: f64) -> f64 {
+        // 0.6/0.2 is rounded to less than three.
+        const ROUNDING: f64 = 1e-12;
+        let quantum = self.torque_quantum;
+        if quantum > 0.0 && limit.is_finite() { quantum * (limit / quantum * (1.0 + ROUNDING)).floor() } else { limit }
+    }
 }
 
 /// The usual relative tolerance of an adaptive method.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::cases::{cases, setup};
-use crate::common::some;
+use crate::common::{every_kind, masses, some};
 use forwardstep_core::Gain;
 use forwardstep_core::agent::{Agent, Inbox, Limiter};
 use forwardstep_core::law::SlotineLi;
@@ -72,6 +72,63 @@ fn prop_sampled_runs_converge_to_the_continuous_one_with_the_period() {
         let orders = [(gaps[0] / gaps[1]).log2(), (gaps[1] / gaps[2]).log2()];
         assert!(orders.iter().all(|order| (0.9..1.15).contains(order)), "{case_name}: {gaps:?}, of orders {orders:?}");
     }
+}
+
+/// Between two samples the plant moves on, and with it all that is made of its state, whatever kind it is.
+#[test]
+fn regress_rows_between_two_samples_show_what_is_so_then() {
+    const ROWS: usize = 5;
+    for (name, setup) in every_kind() {
+        let mut setup = crate::common::sampled(setup, 100.0);
+        (setup.time.end_s, setup.time.record_every_s) = (0.5, 0.002);
+        let outcome = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert!(outcome.recording.t_s.len() > 50, "{name}: {:?}", outcome.ending);
+        for column in &outcome.recording.columns {
+            let made = matches!(column.signal, Signal::TrackingError | Signal::Error | Signal::Lyapunov);
+            let moves = |values: &[f64]| values.iter().any(|value| *value != values[0]);
+            if made && moves(&column.values) {
+                let periods = column.values.chunks(ROWS).filter(|period| moves(period)).count();
+                assert!(2 * ROWS * periods > column.values.len(), "{name}: {:?} {}", column.signal, column.axis);
+            }
+        }
+    }
+    let mut carts = masses::tracking();
+    (carts.time.end_s, carts.time.record_every_s) = (2.0, 0.003);
+    let outcome = run(&crate::common::sampled(carts.clone(), 100.0));
+    let mut jets = [[0.0; 5]; 2];
+    for (row, t_s) in outcome.recording.t_s.iter().enumerate() {
+        carts.agents[0].target.as_ref().unwrap().jets(*t_s, &mut jets);
+        for (axis, jet) in jets.iter().enumerate() {
+            let at = |signal| column(&outcome, 0, signal, axis)[row];
+            assert!((at(Signal::Error) - (at(Signal::Position) - jet[0])).abs() < 1e-14, "{t_s}");
+        }
+    }
+}
+
+/// What is within a limit is so by a whole number of steps, and 0.6/0.2 is three of them.
+#[test]
+fn regress_a_torque_that_is_rounded_reaches_its_limit() {
+    for (quantum, limit, largest) in [
+        (0.2, 0.6, 0.6),
+        (0.1, 0.3, 0.3),
+        (0.1, 0.7, 0.7),
+        (0.4, 1.2, 1.2),
+        (0.5, 1.3, 1.0),
+        (1.0, 0.9, 0.0),
+        (0.0, 1.3, 1.3),
+    ] {
+        let actuators = Actuators { torque_quantum: quantum, ..Actuators::default() };
+        assert!((actuators.largest_within(limit) - largest).abs() < 1e-15, "{quantum} {limit}");
+    }
+    assert_eq!(Actuators { torque_quantum: 0.5, ..Actuators::default() }.largest_within(f64::INFINITY), f64::INFINITY);
+    let mut setup = masses::tracking();
+    let mut digital = control(50.0);
+    digital.actuators = Actuators { torque_limit: Some(vec![0.6; 2]), torque_quantum: 0.2, ..Actuators::default() };
+    setup.agents[0].start.q = vec![3.0, -3.0];
+    setup.control = Some(digital);
+    let outcome = run(&setup);
+    let most = column(&outcome, 0, Signal::Torque, 0).iter().fold(0.0_f64, |most, torque| most.max(torque.abs()));
+    assert!((most - 0.6).abs() < 1e-15, "{most}");
 }
 
 #[test]

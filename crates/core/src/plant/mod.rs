@@ -28,7 +28,7 @@ pub use vehicle::{AcceleratedVehicle, Vehicle, VehicleState};
 use alloc::vec::Vec;
 
 use crate::LengthError;
-use crate::signal::Block;
+use crate::signal::{Block, Signal};
 
 /// A system d/dt state = f(state, input).
 ///
@@ -67,6 +67,10 @@ pub trait Plant: Send + Sync + 'static {
 
     /// Limits `input` to what the actuators can give in `state`.
     fn limit(&self, state: &[f64], input: &mut [f64]);
+
+    /// Writes over what a controller shows of its command, block `signal`, what `input` does, which actuators may have limited; leaves alone what
+    /// it knows nothing of.
+    fn acting(&self, _signal: Signal, _input: &[f64], _shown: &mut [f64]) {}
 
     /// d/dt of `state` under `input` and what acts from outside. Forces and torques come in `external`, in the order of the
     /// axes and then of the body, or what is added to each equation; empty when nothing acts. A plant that nothing acts on

@@ -292,6 +292,14 @@ impl Plant for Spacecraft {
         }
     }
 
+    /// The torque on the body is minus what moves the wheels.
+    fn acting(&self, signal: Signal, input: &[f64], shown: &mut [f64]) {
+        if signal == Signal::Torque {
+            let pull = self.wheels.sum(input);
+            shown.iter_mut().zip(pull).for_each(|(torque, pull)| *torque = -pull);
+        }
+    }
+
     fn rate(
         &self,
         (): &mut (),

@@ -51,7 +51,10 @@ pub(crate) fn summary(
     if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.course()) {
         let time = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{t_s:.2} s"));
         let (predicted, observed) = (time(course.settled_s), time(metrics.settled_to_1_percent_s));
-        rows.push(("settled to 1 %", format!("{observed}, predicted {predicted}")));
+        // Who was never apart has nothing to settle.
+        if metrics.disagreement.initial() != Some(0.0) {
+            rows.push(("settled to 1 %", format!("{observed}, predicted {predicted}")));
+        }
     }
     if let Some(s) = metrics.final_tracking_error {
         rows.push(("final tracking error", format!("|s| ≤ {}", short(s))));

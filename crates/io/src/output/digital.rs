@@ -98,7 +98,9 @@ impl Figures {
         let table = Table::new(setup, recording);
         let rms = |signal| {
             let values = || table.axes(signal).flat_map(|(_, _, values)| values);
-            (values().map(|value| value * value).sum::<f64>() / values().count().max(1) as f64).sqrt()
+            // The sum of nothing has a sign.
+            (values().map(|value| value * value).fold(0.0, |sum, square| sum + square) / values().count().max(1) as f64)
+                .sqrt()
         };
         Figures {
             final_disagreement: metrics.disagreement.last(),

@@ -73,6 +73,14 @@ pub enum Disagreement {
 }
 
 impl Disagreement {
+    /// The disagreement at the first row.
+    pub fn initial(&self) -> Option<f64> {
+        match *self {
+            Disagreement::Measured { initial, .. } => Some(initial),
+            Disagreement::Absent(_) => None,
+        }
+    }
+
     /// The disagreement at the last row.
     pub fn last(&self) -> Option<f64> {
         match *self {

@@ -278,7 +278,8 @@ fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {
 
 fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
     let mut found = Vec::new();
-    let stated = table.setup.control.as_ref().and_then(|control| control.actuators.torque_limit.as_ref());
+    let actuators = table.setup.control.as_ref().map(|control| &control.actuators);
+    let stated = actuators.and_then(|actuators| actuators.torque_limit.as_ref());
     for (agent, setup) in table.setup.agents.iter().enumerate() {
         for (axis, limits) in setup.robot.axes.iter().enumerate() {
             // The limit of the controllers is kept in any case; that of the robot where it is enforced, or only reported.
@@ -297,13 +298,15 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                     LimitKind::Velocity | LimitKind::Signal(_) | LimitKind::Unknown => false,
                 };
                 let place = LimitReached::nowhere(agent, axis, kind, enforced);
-                found.extend(beyond(table.t_s, values, range, place, kind == LimitKind::Effort));
+                let within = |limit| actuators.map_or(limit, |actuators| actuators.largest_within(limit));
+                let clips = (kind == LimitKind::Effort).then(|| within(range[1]));
+                found.extend(beyond(table.t_s, values, range, place, clips));
             }
         }
         for line in setup.robot.interface().lines {
             let (limit, clips) = match line.value {
-                LineValue::Limit(limit) => (limit, false),
-                LineValue::Clip(limit) => (limit, true),
+                LineValue::Limit(limit) => (limit, None),
+                LineValue::Clip(limit) => (limit, Some(limit)),
                 LineValue::Floor(_) | LineValue::Truth(_) => continue,
             };
             let Some(values) = table.column(agent, line.signal, line.entry) else { continue };
@@ -314,22 +317,23 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
     found
 }
 
-/// `place` with its numbers filled in, if any value lies outside of `range`, or on its border where it `clips` what is
-/// enforced.
+/// `place` with its numbers filled in, if any value lies outside of `range`, or where what is enforced `clips` it: on the border, or at the last
+/// step within it of torques that are rounded.
 fn beyond(
     t_s: &[f64],
     values: &[f64],
     [low, high]: [f64; 2],
     place: LimitReached,
-    clips: bool,
+    clips: Option<f64>,
 ) -> Option<LimitReached> {
-    let clipped = place.enforced && clips;
+    let clips = clips.filter(|_| place.enforced);
     let mut result: Option<LimitReached> = None;
     let mut rows = 0_usize;
     for (&t_s, &value) in t_s.iter().zip(values) {
         let (limit, excess) = if value - high > low - value { (high, value - high) } else { (low, low - value) };
-        if excess > 0.0 || clipped && excess == 0.0 {
+        if excess > 0.0 || clips.is_some_and(|at| value.abs() >= at) {
             rows += 1;
+            let excess = excess.max(0.0);
             let seen = result.get_or_insert(LimitReached {
                 first_t_s: t_s,
                 worst_t_s: t_s,

@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AgentSetup, AxisUnit, Setup};
+use forwardstep_sim::{AgentSetup, AxisUnit, ChainModel, Setup};
 
 use super::leader::LeaderColumn;
 
@@ -236,15 +236,30 @@ pub fn gap_unit_on(setup: &Setup, agent: usize, axis: usize) -> String {
     if unit == "1" { String::new() } else { unit }
 }
 
+/// The derivative of the position of a chain that z leads: the last one that is no input, and of a chain in feedback form the position.
+fn followed(setup: &Setup, agent: usize) -> usize {
+    match setup.agents.get(agent).and_then(|agent| agent.robot.kind.downcast()) {
+        Some(model @ (ChainModel::Derivatives(_) | ChainModel::Vector(_))) => model.order().saturating_sub(1),
+        Some(ChainModel::Cascade(_)) => 0,
+        None => 1,
+    }
+}
+
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let own = axis_unit(setup, agent, axis);
     // A chain has all of its axes, and all that is recorded of it, in units of its own.
     if axis_unit(setup, agent, 0) == Some(AxisUnit::Own) {
-        return match signal.row().unit {
-            Unit::Axis(1) => "1/s".into(),
-            Unit::Axis(k) if k > 1 => format!("1/s^{k}"),
-            _ => "1".into(),
+        let derivative = match (signal, signal.row().unit) {
+            (Signal::Reference(r), _) => followed(setup, agent) + usize::from(r),
+            (Signal::TrackingError, _) => followed(setup, agent),
+            (_, Unit::Axis(k)) => usize::from(k),
+            _ => 0,
+        };
+        return match derivative {
+            0 => "1".into(),
+            1 => "1/s".into(),
+            k => format!("1/s^{k}"),
         };
     }
     let letters = |unit: Option<AxisUnit>| match unit {

@@ -198,10 +198,12 @@ impl Predictions {
             PredictedCourse::Found(course) => {
                 let reached = if course.reached { "agreement is reached" } else { "agreement is not reached" };
                 let delayed = course.delay(setup);
-                let settled = course.settled_s.map(|t_s| format!(", settled to 1 % after {t_s:.2} s{delayed}"));
+                let settled = match course.settled_s {
+                    Some(t_s) => format!(", settled to 1 % after {t_s:.2} s{delayed}"),
+                    None => delayed,
+                };
                 let last = course.disagreement.last().copied().unwrap_or(f64::NAN);
                 let end_s = course.t_s.last().copied().unwrap_or(f64::NAN);
-                let settled = settled.unwrap_or_default();
                 let then = format!("disagreement then {} {unit}", number_words(last));
                 sentences.push(format!("{reached} by {end_s} s{settled}; {}", then.trim_end()));
                 sentences.extend(course.value_sentence(setup));

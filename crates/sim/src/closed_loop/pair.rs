@@ -37,6 +37,8 @@ pub(super) trait Pair {
     fn output(&mut self, state: &[f64], output: &mut [f64]) -> Result<(), LengthError>;
     /// Limits `input` to what the actuators can give in `state`.
     fn limit(&self, state: &[f64], input: &mut [f64]);
+    /// Writes what `input` does over the block of what is shown of the command.
+    fn acting(&self, signal: Signal, input: &[f64], shown: &mut [f64]);
     /// d/dt of the plant's state under an input and what acts from outside.
     fn rate(&mut self, state: &[f64], by: [&[f64]; 2], d_state: &mut [f64]) -> Result<(), LengthError>;
     /// Brings the state of the plant back to its manifold.
@@ -135,6 +137,10 @@ impl<C: Controller> Pair for Joined<C> {
 
     fn limit(&self, state: &[f64], input: &mut [f64]) {
         self.plant.limit(state, input);
+    }
+
+    fn acting(&self, signal: Signal, input: &[f64], shown: &mut [f64]) {
+        self.plant.acting(signal, input, shown);
     }
 
     fn rate(&mut self, state: &[f64], [input, external]: [&[f64]; 2], d_state: &mut [f64]) -> Result<(), LengthError> {

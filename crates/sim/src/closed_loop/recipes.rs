@@ -81,9 +81,8 @@ fn limits(own: &AgentSetup, control: Option<&Control>, torques: usize) -> Result
         *limit = limit.min(*effort);
     }
     // A rounded torque must not exceed its limit either.
-    let quantum = actuators.map_or(0.0, |actuators| actuators.torque_quantum);
-    if quantum > 0.0 {
-        torque.iter_mut().for_each(|limit| *limit = quantum * (*limit / quantum).floor());
+    if let Some(actuators) = actuators {
+        torque.iter_mut().for_each(|limit| *limit = actuators.largest_within(*limit));
     }
     let unlimited = torque.iter().chain(&rate).all(|limit| limit.is_infinite());
     Ok((!unlimited).then_some(Limits { torque, rate }))

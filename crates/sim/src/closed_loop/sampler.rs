@@ -100,9 +100,14 @@ impl Digital {
             now_s,
             measured: &self.measured,
             message: &self.message,
-            inbox: Inbox { degree: self.degree, sums: &self.sums },
+            inbox: self.inbox(),
             command: &self.commanded,
         }
+    }
+
+    /// What was heard at the last sample.
+    pub(crate) fn inbox(&self) -> Inbox<'_> {
+        Inbox { degree: self.degree, sums: &self.sums }
     }
 
     /// Whether the run goes on where a step fails, and how many have.
@@ -149,7 +154,7 @@ impl Digital {
         self.samples += 1;
         let own = self.sums.len().min(sums.len());
         self.sums[..own].copy_from_slice(&sums[..own]);
-        let inbox = Inbox { degree, sums: &self.sums };
+        let inbox = Inbox { degree: self.degree, sums: &self.sums };
         match self.controller.step(now_s, &self.measured, inbox) {
             Ok(()) => self.commanded.copy_from_slice(self.controller.command()),
             Err(_) if self.safe => {

@@ -15,6 +15,7 @@
 mod block;
 
 use forwardstep_core::LengthError;
+use forwardstep_core::agent::Inbox;
 use forwardstep_core::controller::{Balance, ControllerOutput, JetsBuffer};
 use forwardstep_core::plant::total;
 use forwardstep_core::signal::Block;
@@ -64,6 +65,8 @@ struct Layout {
     balance: bool,
     /// Where the torques stand in the input, and how many they are.
     torque: (usize, usize),
+    /// The same in what the controller shows, where it shows what it asks of its actuators.
+    shown_torque: (usize, usize),
 }
 
 impl Layout {
@@ -79,14 +82,29 @@ struct Now {
     state: Vec<f64>,
     output: Vec<f64>,
     input: Vec<f64>,
+    /// What the controller showed when it was evaluated last: at the last sample, when control is digital.
     shown: Vec<f64>,
+    /// What a row shows of it.
+    seen: Vec<f64>,
+    /// What is asked of the actuators, before they limit it.
+    asked: Vec<f64>,
     d_controller: Vec<f64>,
 }
 
-/// Where the first number of a signal stands among what is shown.
-fn place_of(signal: Signal, shown: &[Block]) -> Option<usize> {
-    let at = shown.iter().position(|(own, _)| *own == signal)?;
-    Some(shown.iter().take(at).map(|(_, length)| length).sum())
+/// Where the numbers of a signal stand among blocks, and how many they are.
+fn block_of(signal: Signal, blocks: &[Block]) -> Option<(usize, usize)> {
+    let at = blocks.iter().position(|(own, _)| *own == signal)?;
+    Some((total(&blocks[..at]), blocks[at].1))
+}
+
+/// Whether a signal is what a controller that samples went by at its last sample, and goes by until the next: what it commands, how fast its reference
+/// moves, and what it takes parameters for. Others are of the plant's state.
+fn stands(signal: Signal) -> bool {
+    match signal {
+        Signal::Reference(order) => order > 0,
+        Signal::Estimate | Signal::AngularVelocityWanted => true,
+        _ => false,
+    }
 }
 
 impl Solo {
@@ -100,15 +118,15 @@ impl Solo {
         sampled: bool,
         balance: bool,
     ) -> Self {
-        let ([states, _], inputs, lengths) = (pair.states(), pair.inputs(), Lengths::of(&*pair));
-        let torque = inputs.iter().position(|(signal, _)| *signal == Signal::Torque);
+        let ([states, _], shown, lengths) = (pair.states(), pair.shown(), Lengths::of(&*pair));
         let layout = Layout {
             m: pair.axes(),
             velocities: states.get(1).filter(|(signal, _)| *signal == Signal::Velocity).map_or(0, |(_, count)| *count),
             plant: total(&states),
             controller: lengths.controller,
             balance: balance && !sampled,
-            torque: torque.map_or((0, 0), |at| (total(&inputs[..at]), inputs[at].1)),
+            torque: block_of(Signal::Torque, &pair.inputs()).unwrap_or_default(),
+            shown_torque: block_of(Signal::Torque, &shown).unwrap_or_default(),
         };
         let now = Now {
             t_s: 0.0,
@@ -120,10 +138,12 @@ impl Solo {
             output: vec![0.0; lengths.output],
             input: vec![0.0; lengths.input],
             shown: vec![0.0; lengths.shown],
+            seen: vec![0.0; lengths.shown],
+            asked: vec![0.0; lengths.input],
             d_controller: vec![0.0; lengths.controller],
         };
+        let divisor = (block_of(Signal::Divisor, &shown).map(|(first, _)| first), None);
         let (digital, tracing, shown, row) = (None, None, Vec::new(), Vec::new());
-        let divisor = (place_of(Signal::Divisor, &pair.shown()), None);
         Solo { agent, pair, target, effort_limits, digital, tracing, layout, now, shown, divisor, row }
     }
 
@@ -153,7 +173,7 @@ impl Solo {
     /// The input that reaches the plant, what is shown, and the rate of the controller's state.
     fn control(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
         let plant = self.layout.plant;
-        let Now { t_s, jets, state, output, input, shown, d_controller } = &mut self.now;
+        let Now { t_s, jets, state, output, input, shown, d_controller, .. } = &mut self.now;
         if let Some(digital) = &self.digital {
             input.copy_from_slice(digital.held());
             d_controller.fill(0.0);
@@ -162,6 +182,8 @@ impl Solo {
             let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
             self.pair.evaluate(output, outside, own, ControllerOutput { input, d_state: d_controller, shown })?;
         }
+        self.now.asked.copy_from_slice(&self.now.input);
+        let Now { state, input, .. } = &mut self.now;
         let (first, count) = self.layout.torque;
         for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {
             *torque = torque.clamp(-limit, *limit);
@@ -187,15 +209,44 @@ impl Solo {
         }
         dx[plant..end].copy_from_slice(&self.now.d_controller);
         if self.layout.balance {
-            dx[end] = self.balance(x, inputs)?.1;
+            dx[end] = self.balance(x, inputs, false)?.1;
         }
         Ok(())
     }
 
-    /// V and what it loses; needs what [`Solo::control`] left.
-    fn balance(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(f64, f64), LengthError> {
+    /// What a row shows of the controller: of one that samples, what its law says of the state of the plant at that instant, with what it heard last
+    /// and its own state as they stand since; and the torque that is applied. Needs what [`Solo::control`] left.
+    fn show(&mut self, x: &[f64]) -> Result<(), LengthError> {
         let own = &x[self.layout.plant..self.layout.controller_end()];
-        let Now { t_s, jets, state, output, shown, .. } = &self.now;
+        let Now { t_s, jets, output, input, shown, seen, asked, d_controller, .. } = &mut self.now;
+        let limited = *input != *asked;
+        seen.copy_from_slice(shown);
+        if let Some(digital) = &self.digital {
+            let Inbox { degree, sums } = digital.inbox();
+            let outside = Outside { degree: &[degree], sums, jets: jets.jets(), time_s: *t_s };
+            let asked = ControllerOutput { input: asked, d_state: d_controller, shown: seen };
+            self.pair.evaluate(output, outside, own, asked)?;
+            let mut first = 0;
+            for (signal, count) in &self.shown {
+                let block = first..first + count;
+                if stands(*signal) {
+                    seen[block.clone()].copy_from_slice(&shown[block]);
+                }
+                first += count;
+            }
+        }
+        let (first, count) = self.layout.shown_torque;
+        if limited || self.digital.is_some() {
+            self.pair.acting(Signal::Torque, input, &mut seen[first..first + count]);
+        }
+        Ok(())
+    }
+
+    /// V and what it loses, where `shown` is what the controller shows; needs what [`Solo::look`] left.
+    fn balance(&mut self, x: &[f64], inputs: Inputs<'_>, at_row: bool) -> Result<(f64, f64), LengthError> {
+        let own = &x[self.layout.plant..self.layout.controller_end()];
+        let Now { t_s, jets, state, output, shown, seen, .. } = &self.now;
+        let shown = if at_row { seen } else { shown };
         let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
         let truth = [&state[..], inputs.external.unwrap_or_default()];
         let Balance { value, dissipation } = self.pair.balance(truth, output, outside, own, shown)?;
@@ -206,11 +257,12 @@ impl Solo {
         self.look(t_s, x)?;
         self.pair.settle(&mut self.now.state);
         self.control(x, inputs)?;
-        let (value, _) = self.balance(x, inputs)?;
+        self.show(x)?;
+        let (value, _) = self.balance(x, inputs, true)?;
         self.row.clear();
         self.row.extend_from_slice(&self.now.state);
         self.row.extend_from_slice(&self.now.input);
-        self.row.extend_from_slice(&self.now.shown);
+        self.row.extend_from_slice(&self.now.seen);
         if self.is_offset() {
             self.row.extend(self.now.jets.jets().iter().map(|jet| jet[0]));
         }

@@ -295,7 +295,8 @@ impl<'a> Integrator<'a> {
             rate = rate.max(k.abs() / scale);
         }
         let h = if size < 1e-5 || rate < 1e-5 { 1e-6 } else { 0.01 * size / rate };
-        h.min(self.end_s)
+        // A guess that is too short is no reason to give up: the error of the step says what it should be.
+        h.max(self.min_step_s).min(self.end_s)
     }
 
     /// Fills k and `x1`. Where a delay is shorter than the step the piece being made is drafted, used, made, and compared

@@ -52,10 +52,10 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
         LinkEvidence::RefutedWeight { fault, witness } => refuted_weight(*fault, *witness),
         LinkEvidence::ConstantWeights => "no weight changes with time".into(),
         LinkEvidence::VaryingWeights { low, high } => format!(
-            "a weight goes from {} to {}: the design is realised by its integral, which leaves −ẇ(dq_i − dq_j) over, so that \
-             what is integrated is not the law that the proof speaks of",
-            rounded_up(*low),
-            rounded_down(*high)
+            "a weight follows a formula, within {} and {}: where it changes, the design, which is realised by its integral, leaves −ẇ(dq_i − dq_j) \
+             over, so that what is integrated is not the law that the proof speaks of",
+            lower_bound(*low),
+            bound(*high)
         ),
         LinkEvidence::Coupling { size } => {
             format!("its slope at zero is one and it grows more slowly from there; its size is {size}")

@@ -65,7 +65,12 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
 
 fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
     let unit = names::gap_unit(setup);
-    let seconds = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{} s", number(t_s)));
+    let never_apart = metrics.disagreement.initial() == Some(0.0);
+    let seconds = |t_s: Option<f64>| match t_s {
+        Some(t_s) => format!("{} s", number(t_s)),
+        None if never_apart => "never apart".to_owned(),
+        None => "not yet".to_owned(),
+    };
     let size = |value: f64| format!("{} {unit}", number(value));
     let (last, observed_reached) = match metrics.disagreement {
         Disagreement::Measured { last, .. } => (size(last), metrics.disagreement.is_agreement()),
