@@ -359,13 +359,20 @@ impl CourseFound {
                 ratio if ratio <= 1.0 || at_most == 0.0 => String::new(),
                 // Nothing is a share of no torque.
                 ratio if ratio <= 2.0 || peak.value == 0.0 => {
-                    format!("; while V ≤ V(0) at most {at_most:.3} {unit} near this course")
+                    format!("; while V ≤ V(0) at most {} {unit} near this course", three_places(at_most))
                 }
+                1000.0.. => "; the bound by V(0) is more than 1000 times as large, and of no practical use".to_owned(),
                 ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
             },
         );
-        Some(format!("peak torque {:.3} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.value.abs(), peak.t_s))
+        let peak_torque = three_places(peak.value.abs());
+        Some(format!("peak torque {peak_torque} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.t_s))
     }
+}
+
+/// A number with three decimal places, where these are digits that say something and not too many.
+fn three_places(x: f64) -> String {
+    if x == 0.0 || (0.01..1e6).contains(&x) { format!("{x:.3}") } else { number_words(x) }
 }
 
 /// The middle of an interval; what cannot be told from zero is zero.
@@ -381,6 +388,12 @@ const NEAR: f64 = 0.2;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn torques_have_three_places_where_these_say_something() {
+        let said = [0.0, 12.34567, 0.01, 359_608_699_164.0, 0.0042].map(three_places);
+        assert_eq!(said, ["0.000", "12.346", "0.010", "3.596 × 10¹¹", "0.0042"]);
+    }
 
     #[test]
     fn a_course_is_thinned_and_read_between_its_points() {
