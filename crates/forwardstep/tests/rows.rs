@@ -82,6 +82,12 @@ fn regress_the_torque_of_a_spacecraft_is_what_its_wheels_give() {
             limited += given.iter().filter(|given| given.abs() == 0.5).count();
         }
         assert!(limited > 10, "{limited}");
+        assert_eq!(
+            !control.is_empty(),
+            ran.said.contains("what wheels and rotors limit is not counted"),
+            "{}",
+            ran.said
+        );
         let peaks = ran.summary["metrics"]["peak_torques"].as_array().unwrap();
         assert!(peaks.iter().all(|peak| peak["value"].as_f64().unwrap().abs() <= 0.5), "{peaks:?}");
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::{Injection, Report};
-use forwardstep::io::output::names::{agent_name, gap_unit, torque_words, unit};
+use forwardstep::io::output::names::{agent_name, gap_unit, limits_by_itself, torque_words, unit};
 use forwardstep::io::output::{
     Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin,
 };
@@ -112,7 +112,9 @@ fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) ->
         rows.push(("sampling margin", format!("σ = {} at most, {agent} at {t_s:.2} s", short(sigma))));
     }
     if let Some(ClippedSamples { samples, torque, rate }) = clipped {
-        let words = if torque + rate == 0 {
+        let words = if torque + rate == 0 && limits_by_itself(setup) {
+            format!("none of {samples} samples by the controllers; what wheels and rotors limit is not counted")
+        } else if torque + rate == 0 {
             format!("none of {samples} samples")
         } else {
             format!("{torque} by limits of torque, {rate} by limits of rate, of {samples} samples")

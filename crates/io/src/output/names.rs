@@ -7,13 +7,21 @@ use std::collections::{BTreeSet, HashSet};
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{AgentSetup, AxisUnit, ChainModel, Setup};
+use forwardstep_sim::{ActuatorLimits, AgentSetup, AxisUnit, ChainModel, RotorcraftModel, Setup};
 
 use super::leader::LeaderColumn;
 
 /// The name of an agent; a number when the setup has no such agent.
 pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
+}
+
+/// Whether an agent has actuators with limits of their own, wheels or rotors, of which controllers know nothing.
+pub fn limits_by_itself(setup: &Setup) -> bool {
+    setup.agents.iter().any(|agent| {
+        let wheels = agent.enforce_limits && agent.robot.interface().actuator_limits == ActuatorLimits::Own;
+        wheels || agent.robot.kind.downcast().is_some_and(|model: &RotorcraftModel| model.rotors.is_some())
+    })
 }
 
 /// A reason that [`forwardstep_check`] gives, which knows agents by their number, with their names.

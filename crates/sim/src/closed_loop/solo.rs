@@ -173,7 +173,7 @@ impl Solo {
     /// The input that reaches the plant, what is shown, and the rate of the controller's state.
     fn control(&mut self, x: &[f64], inputs: Inputs<'_>) -> Result<(), LengthError> {
         let plant = self.layout.plant;
-        let Now { t_s, jets, state, output, input, shown, d_controller, .. } = &mut self.now;
+        let Now { t_s, jets, state, output, input, asked, shown, d_controller, .. } = &mut self.now;
         if let Some(digital) = &self.digital {
             input.copy_from_slice(digital.held());
             d_controller.fill(0.0);
@@ -182,8 +182,7 @@ impl Solo {
             let outside = Outside { degree: inputs.degree, sums: inputs.sums, jets: jets.jets(), time_s: *t_s };
             self.pair.evaluate(output, outside, own, ControllerOutput { input, d_state: d_controller, shown })?;
         }
-        self.now.asked.copy_from_slice(&self.now.input);
-        let Now { state, input, .. } = &mut self.now;
+        asked.copy_from_slice(input);
         let (first, count) = self.layout.torque;
         for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {
             *torque = torque.clamp(-limit, *limit);
