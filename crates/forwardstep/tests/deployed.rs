@@ -198,3 +198,27 @@ fn regress_the_margin_of_who_follows_is_that_of_its_start() {
         assert!(said > 0.9 * reached.sigma && said < 1.6 * reached.sigma, "{name}: {said}, {reached:?}");
     }
 }
+
+/// References that are as fast as K/M answer what grows by itself: the margin, which freezes them, is not the last word.
+#[test]
+fn regress_the_margin_of_what_the_loop_as_a_whole_holds_is_marginal() {
+    let masses = |roots: &str| {
+        head(60, 17.8)
+            + &format!(
+                "[[agents]]\nname = \"a\"\ncount = 2\nrobot.point_mass = {{ dimension = 1, mass_kg = 2.583 }}\n\
+                 start.position_m = [[0.5], [-0.5]]\n[reference.consensus]\nroots_per_s = {roots}\nexchange = \"position_velocity\"\n\
+                 [law.known]\ndamping.gain = 123.979\n[network]\nedges.ring = {{}}\n"
+            )
+    };
+    let folder = folder();
+    for (roots, margin, whole, agrees) in
+        [("[20, 30]", "marginal", "adequate", true), ("[1, 2]", "inadequate", "inadequate", false)]
+    {
+        let verdicts = checked(&folder, &masses(roots));
+        let answer = |name: &str| verdicts.iter().find(|verdict| verdict["id"] == name).unwrap()["answer"].clone();
+        assert_eq!((answer("sampling-margin"), answer("whole-loop")), (margin.into(), whole.into()), "{roots}");
+        let summary = summary_of_run(&folder);
+        let last = summary["metrics"]["disagreement"]["measured"]["last"].as_f64();
+        assert_eq!(last.is_some_and(|last| last < 1e-9), agrees, "{roots}: {last:?}");
+    }
+}

@@ -39,6 +39,9 @@ pub struct SamplingMargin {
     pub recommended_s: Option<f64>,
     /// σ of the damping alone does not exceed this at any position of any agent, by certified bounds of M; `None` without those.
     pub anywhere: Option<f64>,
+    /// Whether the loop as a whole was seen to decay, with references that answer s: with z frozen, as σ has it, a mode that is as fast as they are
+    /// grows sooner than it does.
+    pub held_by_references: bool,
     /// How many adaptive agents follow targets of their own. They adapt with the s of the sample that gave Y, for which no margin is
     /// known: their σ is that of the damping alone.
     pub adaptation_left_out: usize,
@@ -113,6 +116,7 @@ impl SamplingMargin {
             longest_s: longest(1.0),
             recommended_s: longest(RECOMMENDED_MARGIN),
             anywhere: anywhere_per_s.map(|rate| period_s * rate / hold.largest_gain(period_s)),
+            held_by_references: false,
             adaptation_left_out: learners.filter(|agent| setup.agents[*agent].law.is::<Adaptive>()).count(),
             start,
             worst,
@@ -129,7 +133,9 @@ impl SamplingMargin {
     /// Inadequate only where a mode is unstable at the start of an agent; not shown where one is in another state, or
     /// where V may grow from sample to sample though none is.
     pub fn answer(&self) -> PracticalAnswer {
-        if self.start.is_unstable {
+        if self.held_by_references {
+            PracticalAnswer::Marginal
+        } else if self.start.is_unstable {
             PracticalAnswer::Inadequate
         } else if self.worst.sigma >= 1.0 {
             PracticalAnswer::NotShown

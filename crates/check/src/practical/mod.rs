@@ -31,10 +31,11 @@ mod power;
 pub(crate) mod rates;
 mod words;
 
-use forwardstep_sim::Setup;
+use forwardstep_sim::{Adaptive, Setup};
 
 use self::led::way;
 use self::loads::limits;
+use crate::hypothesis::Named;
 use crate::instance::designed;
 
 pub use agreement::{AgreementBound, AxisBound};
@@ -194,7 +195,12 @@ pub fn practical(setup: &Setup) -> Practical {
     let limited = (0..setup.agents.len()).any(|agent| limits(setup, agent).is_some());
     let way = if limited || setup.control.is_some() { way(setup) } else { Vec::new() };
     let whole = WholeLoop::on(setup, &way);
-    let margin = SamplingMargin::on(setup, &way);
+    let mut margin = SamplingMargin::on(setup, &way);
+    // Where parameters are known, so that neither freezes what adapts.
+    if let (Some(margin), Some(PracticalAnswer::Adequate)) = (&mut margin, whole.as_ref().map(WholeLoop::answer)) {
+        let knows = |agent: &Named| setup.agents.get(agent.index).is_some_and(|agent| !agent.law.is::<Adaptive>());
+        margin.held_by_references = margin.start.is_unstable && knows(&margin.start.agent);
+    }
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
     // What may grow has no bound.
     let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown);

@@ -55,8 +55,10 @@ fn sampling(margin: &SamplingMargin) -> String {
 }
 
 /// What σ from 1 on means.
-fn too_slow(SamplingMargin { start, worst, .. }: &SamplingMargin) -> &'static str {
-    if start.is_unstable && start.damping_sigma < 1.0 {
+fn too_slow(SamplingMargin { start, worst, held_by_references, .. }: &SamplingMargin) -> &'static str {
+    if *held_by_references {
+        "; by itself the fastest mode would grow, and as a whole, with references that answer it, the loop decays"
+    } else if start.is_unstable && start.damping_sigma < 1.0 {
         "; damping and adaptation together are unstable at the start: let Γ be smaller, or sample faster"
     } else if start.is_unstable {
         "; sampling is too slow at the start: the fastest mode grows"
