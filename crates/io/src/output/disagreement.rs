@@ -223,7 +223,7 @@ impl DisagreementSeries {
     }
 }
 
-/// Up to here nobody asks for a difference, rad or m.
+/// Differences that are smaller are not asked for, rad or m.
 const FINEST: f64 = 1e-9;
 
 /// The difference of two positions. Of numbers so large that their last digit is coarser than what anybody asks for, it is not less than that

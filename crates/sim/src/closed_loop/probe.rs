@@ -81,8 +81,8 @@ pub fn singular_start(setup: &Setup, index: usize) -> Result<Option<Singularity>
     Ok(columns.trouble(&x).map(|(_, singularity)| singularity))
 }
 
-/// Agent `index` with nobody to hear and nothing that acts on it, in continuous time and with its balance.
-fn alone(setup: &Setup, index: usize) -> Option<Setup> {
+/// Agent `index` without neighbours, pushes and limits, in continuous time and with its balance.
+pub(super) fn alone(setup: &Setup, index: usize) -> Option<Setup> {
     let mut own = setup.agents.get(index)?.clone();
     own.enforce_limits = false;
     own.pushes.clear();

@@ -9,12 +9,10 @@
 use super::assembly::Assembly;
 use super::columns::{Columns, Inputs};
 use super::error::SetupError;
-use super::probe::alone_under;
+use super::probe::alone;
 use super::recipes::built;
 use super::valid::message_len;
 use crate::Signal;
-use crate::network::Network;
-use crate::schedule::Schedule;
 use crate::setup::{Actuators, Control, Failures, Sensors, Setup, Solver, VelocitySensor};
 
 /// Steps of the classical Runge–Kutta method before a late command, and after it: the first that agree with four times as many, else the
@@ -69,31 +67,20 @@ pub fn sampled_loop(
     degree: f64,
     periods: Periods,
 ) -> Result<Option<SampledLoop>, SetupError> {
-    let (Some(control), Some(own)) = (&setup.control, setup.agents.get(index)) else { return Ok(None) };
+    let (Some(control), Some(own)) = (&setup.control, alone(setup, index)) else { return Ok(None) };
     let quick = match control.sensors.velocity {
         VelocitySensor::Measured => None,
         VelocitySensor::Filtered { cut_off_hz } => {
             Some(-libm::expm1(-core::f64::consts::TAU * cut_off_hz / control.sample_hz))
         }
     };
-    let mut own = own.clone();
-    own.enforce_limits = false;
-    own.pushes.clear();
     let exact = Control {
         sensors: Sensors::default(),
         actuators: Actuators::default(),
         failures: Failures::default(),
         ..control.clone()
     };
-    let alone = Setup {
-        agents: vec![own],
-        reference: alone_under(setup, index),
-        exchange: setup.exchange,
-        network: Network::switching(1, Schedule::fixed(Vec::new()), Vec::new()),
-        time: setup.time.clone(),
-        solver: Solver { balance: false, ..setup.solver },
-        control: Some(exact.clone()),
-    };
+    let alone = Setup { solver: Solver { balance: false, ..own.solver }, control: Some(exact.clone()), ..own };
     let law = alone.agents[0].law.clone();
     let block = law.block(&Assembly::new(&alone, &[0]))?;
     let heard = [(); 2].map(|()| vec![0.0; message_len(&alone)]);
