@@ -158,3 +158,41 @@ fn regress_z_and_s_of_chains_have_the_unit_of_what_z_leads() {
     let strict = "strict_feedback = { regressors = [[\"x1\"], [\"0\"]], parameters = [0.1] }";
     assert_eq!(units(strict, "adaptive_backstepping", "start.higher_states = [0.5]"), ["1", "1/s", "1"]);
 }
+
+#[test]
+fn regress_rotors_that_stand_at_their_limits_are_listed() {
+    let craft = |thrust_n: &str, tilted: f64| {
+        format!(
+            "format = 2\ntime.end_s = 4\n[[agents]]\nname = \"craft\"\ncount = 2\n\
+             robot.rotorcraft = {{ mass_kg = 1.2, inertia_kg_m2 = [0.012, 0.012, 0.022], rotors = {{ offset_m = 0.15, drag_m = 0.02, thrust_n = {thrust_n} }} }}\n\
+             start.position_m = [[0, 0, 0], [9, 0, 0]]\nstart.attitude = {{ axis = [1, 0, 0], angle_rad = {tilted} }}\n[reference.consensus]\nexchange = \"position\"\nroots_per_s = [1, 1.5, 2]\n[law.thrust]\n\
+             design.differentiable = {{ damping_per_s = 3, stiffness = 4 }}\nrate_bandwidth_per_s = 30\n[network]\nedges.ring = {{}}\n"
+        )
+    };
+    let ran = Ran::of(&craft("[2, 4]", 1.2), 0);
+    let column = |name: &str| ran.column(&format!("craft-1.{name}"));
+    let rows = column("sigma").len();
+    let reached = ran.summary["metrics"]["limits_reached"].as_array().unwrap();
+    let mut found = 0;
+    for (rotor, [x, y, c]) in
+        [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]].iter().enumerate()
+    {
+        let thrust = |row: usize| {
+            let tau = |axis: &str| column(&format!("tau.{axis}"))[row];
+            0.25 * (column("sigma")[row] + (x * tau("y") - y * tau("x")) / 0.15 + c * tau("z") / 0.02)
+        };
+        let at = |row: &usize| thrust(*row) < 2.0 + 1e-6 || thrust(*row) > 4.0 - 1e-6;
+        let (at_limit, first) = ((0..rows).filter(at).count(), (0..rows).find(at));
+        let listed =
+            reached.iter().find(|limit| limit["agent"] == 0 && limit["kind"] == "rotor" && limit["axis"] == rotor);
+        assert_eq!(listed.is_some(), at_limit > 0, "{rotor}");
+        let Some(listed) = listed else { continue };
+        found += 1;
+        assert_eq!((listed["share"].as_f64().unwrap() * rows as f64).round(), at_limit as f64);
+        assert_eq!(listed["first_t_s"].as_f64().unwrap(), ran.column("t_s")[first.unwrap()]);
+        assert_eq!((&listed["enforced"], listed["excess"].as_f64()), (&Value::Bool(true), Some(0.0)));
+    }
+    assert!(found > 0 && ran.said.contains("limits reached"), "{}", ran.said);
+    let free = Ran::of(&craft("[0, 100]", 0.0), 0);
+    assert_eq!(free.summary["metrics"]["limits_reached"].as_array().unwrap().len(), 0);
+}

@@ -382,7 +382,11 @@ fn every_reason_for_which_there_is_no_gain_is_the_one_that_is_said() {
     assert_eq!(said(&|setup| setup.network.coupling = tanh), Some(NoReferenceGains::Coupling));
     let backstepping = Arc::new(Backstepping { filter_s: 0.1, acceleration_limit: None });
     assert_eq!(said(&|setup| setup.reference = backstepping.clone()), Some(NoReferenceGains::Reference));
-    assert_eq!(said(&|setup| setup.agents[1].law = blind_mass(1.0, 1.0).law), Some(NoReferenceGains::Law { agent: 1 }));
+    let second = three(10.0).agents[1].name.clone();
+    assert_eq!(
+        said(&|setup| setup.agents[1].law = blind_mass(1.0, 1.0).law),
+        Some(NoReferenceGains::Law { agent: second })
+    );
     let held = Delay::new(SawTooth { min_s: 0.0, max_s: 1.0, period_s: 1.0, offset_s: 0.0 });
     assert_eq!(said(&|setup| setup.network.delays[0] = held.clone()), Some(NoReferenceGains::Held));
     let positions = |setup: &mut Setup| {

@@ -7,7 +7,7 @@ use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, limits_by_itself, torque_words, unit};
 use forwardstep::io::output::{
-    Conclusion, Disagreement, FirstInjection, Gap, Injected, Metrics, RunRecord, WatchedMargin,
+    Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Metrics, RunRecord, WatchedMargin,
 };
 use forwardstep::io::shown;
 use forwardstep::sim::reference::Backstepping;
@@ -71,7 +71,7 @@ pub(crate) fn summary(
         rows.push(("peak torque", format!("{value}, {agent}, {axis} at {:.2} s", peak.t_s)));
     }
     if !metrics.limits_reached.is_empty() {
-        rows.push(("limits exceeded", format!("{}, see the report", metrics.limits_reached.len())));
+        rows.push((limits_words(&metrics.limits_reached), format!("{}, see the report", metrics.limits_reached.len())));
     }
     rows.extend(watched(setup, metrics, outcome.statistics.clipped));
     if let Some(gap) = record.digital.as_ref().and_then(|cost| cost.largest_gap) {
@@ -102,6 +102,11 @@ pub(crate) fn summary(
     }
     let lines: Vec<_> = table.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
     lines.concat()
+}
+
+/// What became of the limits in a list of them.
+fn limits_words(limits: &[LimitReached]) -> &'static str {
+    if limits.iter().all(|limit| limit.excess <= 0.0) { "limits reached" } else { "limits exceeded" }
 }
 
 /// The sampling margin along the run, and the commands that limits changed.

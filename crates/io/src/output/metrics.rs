@@ -1,7 +1,7 @@
 //! A run in a few numbers.
 
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{LineValue, Setup};
+use forwardstep_sim::{LineValue, RotorcraftModel, Setup};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -89,6 +89,8 @@ pub enum LimitKind {
     Velocity,
     /// Highest torque or force.
     Effort,
+    /// Lowest or highest thrust of a rotor; the axis is its number.
+    Rotor,
     /// A limit of the plant's own, of this signal.
     Signal(Signal),
     /// The same, read back from a file, which has the symbol only.
@@ -101,6 +103,7 @@ impl Serialize for LimitKind {
             LimitKind::Position => serializer.serialize_str("position"),
             LimitKind::Velocity => serializer.serialize_str("velocity"),
             LimitKind::Effort => serializer.serialize_str("effort"),
+            LimitKind::Rotor => serializer.serialize_str("rotor"),
             LimitKind::Signal(signal) => serializer.serialize_str(&signal.name()),
             LimitKind::Unknown => serializer.serialize_str("unknown"),
         }
@@ -113,17 +116,18 @@ impl<'de> Deserialize<'de> for LimitKind {
             "position" => LimitKind::Position,
             "velocity" => LimitKind::Velocity,
             "effort" => LimitKind::Effort,
+            "rotor" => LimitKind::Rotor,
             _ => LimitKind::Unknown,
         })
     }
 }
 
-/// A limit of an axis that was exceeded at some row; for efforts of agents that enforce their limits, that was reached.
+/// A limit of an axis that was exceeded at some row; for rotors, and for efforts of agents that enforce their limits, that was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitReached {
     /// The agent.
     pub agent: usize,
-    /// The axis, or the entry of the signal.
+    /// The axis, the entry of the signal, or the rotor.
     pub axis: usize,
     /// Which limit.
     #[schemars(with = "String")]
@@ -295,26 +299,49 @@ fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
                 let enforced = match kind {
                     LimitKind::Position => setup.enforce_limits,
                     LimitKind::Effort => setup.enforce_limits || kept.is_some(),
-                    LimitKind::Velocity | LimitKind::Signal(_) | LimitKind::Unknown => false,
+                    LimitKind::Velocity | LimitKind::Rotor | LimitKind::Signal(_) | LimitKind::Unknown => false,
                 };
                 let place = LimitReached::nowhere(agent, axis, kind, enforced);
                 let within = |limit| actuators.map_or(limit, |actuators| actuators.largest_within(limit));
-                let clips = (kind == LimitKind::Effort).then(|| within(range[1]));
+                let clips = (kind == LimitKind::Effort).then(|| [-within(range[1]), within(range[1])]);
                 found.extend(beyond(table.t_s, values, range, place, clips));
             }
         }
         for line in setup.robot.interface().lines {
             let (limit, clips) = match line.value {
                 LineValue::Limit(limit) => (limit, None),
-                LineValue::Clip(limit) => (limit, Some(limit)),
+                LineValue::Clip(limit) => (limit, Some([-limit, limit])),
                 LineValue::Floor(_) | LineValue::Truth(_) => continue,
             };
             let Some(values) = table.column(agent, line.signal, line.entry) else { continue };
             let place = LimitReached::nowhere(agent, line.entry, LimitKind::Signal(line.signal), setup.enforce_limits);
             found.extend(beyond(table.t_s, values, [-limit, limit], place, clips));
         }
+        found.extend(rotors(table, agent));
     }
     found
+}
+
+/// How far from its limit, over their distance, the thrust of a rotor may be that stands at it: it is worked out from σ and τ, which are rounded.
+const ROTOR_ROUNDING: f64 = 1e-9;
+
+/// The rotors of a rotorcraft that stood at their limits; they keep to them in any case.
+fn rotors(table: &Table<'_>, agent: usize) -> Vec<LimitReached> {
+    let model = table.setup.agents.get(agent).and_then(|agent| agent.robot.kind.downcast::<RotorcraftModel>());
+    let Some(rotors) = model.and_then(|model| model.rotors) else { return Vec::new() };
+    let column = |signal, entry| table.column(agent, signal, entry);
+    let torque = [0, 1, 2].map(|axis| column(Signal::Torque, axis));
+    let (Some(sigma), [Some(x), Some(y), Some(z)]) = (column(Signal::Thrust, 0), torque) else { return Vec::new() };
+    let rows = sigma.iter().zip(x).zip(y).zip(z);
+    let thrusts: Vec<[f64; 4]> = rows.map(|(((sigma, x), y), z)| rotors.thrusts(*sigma, [*x, *y, *z])).collect();
+    let [least, most] = rotors.thrust;
+    let slack = ROTOR_ROUNDING * (most - least);
+    let reached = (0..4).filter_map(|rotor| {
+        let values: Vec<f64> = thrusts.iter().map(|thrusts| thrusts[rotor].clamp(least, most)).collect();
+        let place = LimitReached::nowhere(agent, rotor, LimitKind::Rotor, true);
+        beyond(table.t_s, &values, rotors.thrust, place, Some([least + slack, most - slack]))
+    });
+    reached.collect()
 }
 
 /// `place` with its numbers filled in, if any value lies outside of `range`, or where what is enforced `clips` it: on the border, or at the last
@@ -324,14 +351,14 @@ fn beyond(
     values: &[f64],
     [low, high]: [f64; 2],
     place: LimitReached,
-    clips: Option<f64>,
+    clips: Option<[f64; 2]>,
 ) -> Option<LimitReached> {
     let clips = clips.filter(|_| place.enforced);
     let mut result: Option<LimitReached> = None;
     let mut rows = 0_usize;
     for (&t_s, &value) in t_s.iter().zip(values) {
         let (limit, excess) = if value - high > low - value { (high, value - high) } else { (low, low - value) };
-        if excess > 0.0 || clips.is_some_and(|at| value.abs() >= at) {
+        if excess > 0.0 || clips.is_some_and(|[low, high]| value <= low || value >= high) {
             rows += 1;
             let excess = excess.max(0.0);
             let seen = result.get_or_insert(LimitReached {

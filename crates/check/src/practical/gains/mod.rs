@@ -89,10 +89,10 @@ pub enum NoReferenceGains {
     #[error("the coupling is nonlinear")]
     Coupling,
     /// Its law does not lead q̇ to z.
-    #[error("the law of agent number {} does not lead the velocity to z", agent + 1)]
+    #[error("the law of {agent} does not lead the velocity to z")]
     Law {
-        /// Index of the agent.
-        agent: usize,
+        /// Name of the agent.
+        agent: String,
     },
     /// One agent alone has no disagreement.
     #[error("there are no two agents to compare")]
@@ -140,8 +140,8 @@ impl ReferenceGains {
         let agents = (0..setup.agents.len()).map(|index| Agent::of(setup, index)).collect::<Option<Vec<_>>>();
         let agents = agents.ok_or(NoReferenceGains::Reference)?;
         let leads = |agent: &AgentSetup| order(agent) == Some(2) && !agent.law.is::<PositionOnlyLaw>();
-        if let Some(agent) = setup.agents.iter().position(|agent| !leads(agent)) {
-            return Err(NoReferenceGains::Law { agent });
+        if let Some(agent) = setup.agents.iter().find(|agent| !leads(agent)) {
+            return Err(NoReferenceGains::Law { agent: agent.name.clone() });
         }
         let timeout_s = setup.control.as_ref().and_then(|control| control.failures.message_timeout_s);
         if timeout_s.is_some_and(|timeout_s| timeout_s < network.max_delay_s()) {

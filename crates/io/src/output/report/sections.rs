@@ -8,7 +8,7 @@ use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::ending::ending_sentence;
-use super::super::metrics::{Disagreement, Gap, LimitKind, Metrics};
+use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::text::{self, number, prose};
@@ -265,11 +265,12 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                                 LimitKind::Effort => {
                                     (if names::unit(setup, limit.agent, Signal::Torque, limit.axis) == "N" { "force" } else { "torque" }.to_owned(), Signal::Torque)
                                 }
+                                LimitKind::Rotor => ("thrust".to_owned(), Signal::Thrust),
                                 LimitKind::Signal(signal) => (signal.name().replace('_', " "), signal),
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);
                             tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (names::entry_words(setup, limit.agent, signal, limit.axis)) }
+                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (limit_entry(setup, limit, signal)) }
                                 td { (kind) }
                                 td { (number(limit.limit)) " " (unit) }
                                 td { (number(limit.worst)) " " (unit) }
@@ -286,6 +287,14 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// What of an agent has the limit: an axis, an entry of a signal, or a rotor.
+fn limit_entry(setup: &Setup, limit: &LimitReached, signal: Signal) -> String {
+    match limit.kind {
+        LimitKind::Rotor => format!("rotor {}", limit.axis + 1),
+        _ => names::entry_words(setup, limit.agent, signal, limit.axis),
     }
 }
 
