@@ -64,7 +64,7 @@ fn known_delays(setup: &Setup) -> LinkEvidence {
     let (mut basis, mut holds_packets) = (Basis::Rule, false);
     for known in known_each(setup) {
         bound_s = bound_s.max(known.bound_s);
-        if known.holds_packets && known.unknown.is_some() {
+        if known.unknown.is_some() {
             oldest_s = oldest_s.max(known.bound_s);
         }
         holds_packets |= known.holds_packets;
@@ -180,9 +180,10 @@ fn refuted_weight(weight: &BoundedFormula) -> Option<LinkEvidence> {
     Some(LinkEvidence::RefutedWeight { fault, witness: weight.seen_outside(range) })
 }
 
-/// (119) and (122) are realised by their integrals, in which weights stand as if they were constant.
-pub(crate) fn constant_weights(setup: &Setup) -> Hypothesis {
-    let evidence = hull(setup, BoundedFormula::within)
-        .map_or(LinkEvidence::ConstantWeights, |Interval { low, high }| LinkEvidence::VaryingWeights { low, high });
+/// (119) and (122) are realised by their integrals, in which weights stand as if they were constant. What is integrated as it stands `lags`
+/// over late links, by how much is known of constant weights.
+pub(crate) fn constant_weights(setup: &Setup, lags: bool) -> Hypothesis {
+    let varying = |Interval { low, high }| LinkEvidence::VaryingWeights { low, high, lags };
+    let evidence = hull(setup, BoundedFormula::within).map_or(LinkEvidence::ConstantWeights, varying);
     Hypothesis::new(Id::ConstantWeights, evidence)
 }

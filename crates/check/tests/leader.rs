@@ -454,6 +454,16 @@ fn eq_119_and_eq_122_want_weights_that_do_not_vary_and_eq_110_does_not() {
         }
     }
     assert_eq!(said(FollowingDesign::Continuous, varies[0].clone()), (None, Answer::Holds));
+    // Over late links how far agents stay behind is known of constant ones, and another design is no change.
+    let mut late = setup(FollowingDesign::Composite, wave(), 6.0);
+    late.network.delays = vec![Delay::constant(0.05)];
+    late.network.weights = vec![BoundedFormula::new(varies[0].clone(), 20.0)];
+    late.network.schedule.graphs[0][0].weight = Weight::Formula(0);
+    let report = check(&late);
+    let found = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::ConstantWeights).unwrap();
+    assert_eq!(found.answer(), Answer::NotCovered);
+    assert!(found.because().contains("stay behind over late links") && !found.because().contains("integral"));
+    assert_eq!(found.change().as_deref(), Some("weights that are constant"));
     let swarm = FollowingDesign::Swarm { coupling: 50.0 };
     assert_eq!(said(swarm, varies[0].clone()).1, Answer::NotCovered);
 }

@@ -281,6 +281,29 @@ fn networks_with_other_numbers_are_not_the_same() {
 }
 
 #[test]
+fn what_a_sweep_varies_is_in_the_table() {
+    let here = folder();
+    let masses = |weight: f64, more: &str| {
+        format!(
+            "format = 2\ntime.end_s = 1\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n\
+             start.position_m = [[0], [1]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n[law.known]\ndamping.gain = 5\n\
+             [network]\nweight = {weight}\nedges.ring = {{}}\n{more}"
+        )
+    };
+    write(&here, "half.toml", &masses(0.5, ""));
+    write(&here, "two.toml", &masses(2.0, "delay.constant_s = 0.1\n"));
+    let found = document(&here, &["half.toml", "two.toml"], "both");
+    assert_eq!(words(&found, "scenario.network.weight"), ["0.5", "2"]);
+    assert_eq!(words(&found, "scenario.network.delay.constant_s"), ["—", "0.1"]);
+    let keys = found["rows"].as_array().unwrap().iter().map(|row| row["key"].as_str().unwrap());
+    assert_eq!(keys.filter(|key| key.starts_with("scenario.")).count(), 2);
+    assert_eq!(row(&found, "scenario.network.weight")["same"], false);
+    // Scenarios that have little in common are no variants.
+    let arms = document(&here, &["half.toml", "six-arms"], "other");
+    assert!(arms["rows"].as_array().unwrap().iter().all(|row| !row["key"].as_str().unwrap().starts_with("scenario.")));
+}
+
+#[test]
 fn a_hostile_title_is_text_on_the_page() {
     let here = folder();
     let title = "</script><img src=x onerror=alert(1)> & more";

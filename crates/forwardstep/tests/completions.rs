@@ -21,7 +21,30 @@ fn every_command_has_a_manual_page() {
     }
     let refused = forwardstep(&["man", &format!("{path}/none")]).code(2);
     let said = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
-    assert!(said.contains("cannot write manual pages into") && said.contains("/none`"), "{said}");
+    assert!(said.contains("there is no folder") && said.contains("/none`"), "{said}");
+    // Its own pages are replaced, and nothing else is.
+    forwardstep(&["man", path]).success();
+    let foreign = folder.path().join("forwardstep-run.1");
+    std::fs::write(&foreign, "my notes").unwrap();
+    std::fs::remove_file(folder.path().join("forwardstep-new.1")).unwrap();
+    let refused = forwardstep(&["man", path]).code(2);
+    let said = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(said.contains("forwardstep-run.1` already exists, and this command did not write it"), "{said}");
+    assert_eq!(std::fs::read_to_string(&foreign).unwrap(), "my notes");
+    assert!(!folder.path().join("forwardstep-new.1").exists());
+}
+
+/// What a link leads to is not in the folder.
+#[cfg(unix)]
+#[test]
+fn regress_manual_pages_do_not_go_through_links_to_what_others_wrote() {
+    let folder = tempfile::tempdir().unwrap();
+    let [pages, precious] = ["pages", "precious"].map(|name| folder.path().join(name));
+    std::fs::create_dir(&pages).unwrap();
+    std::fs::write(&precious, "precious").unwrap();
+    std::os::unix::fs::symlink(&precious, pages.join("forwardstep.1")).unwrap();
+    forwardstep(&["man", pages.to_str().unwrap()]).code(2);
+    assert_eq!(std::fs::read_to_string(&precious).unwrap(), "precious");
 }
 
 #[test]

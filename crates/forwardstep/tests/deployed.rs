@@ -3,6 +3,7 @@
 use std::fs;
 
 use forwardstep::check::{SamplingMargin, along};
+use forwardstep::io::output::Deployment;
 use forwardstep::io::scenario::open_scenario;
 use forwardstep::sim::run;
 use serde_json::Value;
@@ -220,5 +221,52 @@ fn regress_the_margin_of_what_the_loop_as_a_whole_holds_is_marginal() {
         let summary = summary_of_run(&folder);
         let last = summary["metrics"]["disagreement"]["measured"]["last"].as_f64();
         assert_eq!(last.is_some_and(|last| last < 1e-9), agrees, "{roots}: {last:?}");
+    }
+}
+
+/// Where roots are faster than K/M the loop as a whole needs shorter periods than σ says.
+#[test]
+fn regress_what_the_loop_as_a_whole_bears_limits_the_rule_for_slow_damping() {
+    let slow = |control: &str| {
+        format!(
+            "format = 2\n[time]\nend_s = 60\n{control}[[agents]]\nname = \"m\"\ncount = 3\nrobot.point_mass = {{ dimension = 1, mass_kg = 10 }}\n\
+             start.position_m = [[0], [1], [-1]]\n[reference.consensus]\nroots_per_s = [2, 4]\nexchange = \"position\"\n[law.known]\n\
+             damping.gain = 8\n[network]\nedges.complete = {{}}\n"
+        )
+    };
+    let folder = folder();
+    fs::write(folder.path().join("slow.toml"), slow("")).unwrap();
+    let setup = open_scenario(folder.path().join("slow.toml").to_str().unwrap()).unwrap().setup;
+    let rule = Deployment { late: None, filter_hz: None }.rule(&setup).unwrap();
+    assert!(rule.linearised && (0.2..0.3).contains(&rule.period_s), "{rule:?}");
+    // The margin alone is enough at four times that, and says whom to ask.
+    let verdicts = checked(&folder, &slow("[control]\nsample_hz = 1\n"));
+    let find = |id: &str| verdicts.iter().find(|verdict| verdict["id"] == id).unwrap();
+    let said = find("sampling-margin")["because"].as_str().unwrap();
+    assert!(said.contains("roots of up to 4/s are faster than that mode") && said.contains("whole-loop"), "{said}");
+    assert_eq!(find("whole-loop")["answer"], "inadequate");
+    assert!(!find("whole-loop")["because"].as_str().unwrap().contains("adapt"), "nothing adapts");
+    assert!(
+        summary_of_run(&folder)["metrics"]["disagreement"]["measured"]["last"].as_f64().is_none_or(|last| last > 1e3)
+    );
+}
+
+/// A gain that is too large is named, and no run advises more damping where samples cannot bear what there is.
+#[test]
+fn regress_the_gain_that_samples_cannot_bear_is_named() {
+    let arms = |damping: f64, adaptation: f64| {
+        format!(
+            "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"arm\"\ncount = 3\nrobot.urdf.file = \"ur5e.urdf\"\n\
+             start.position = {{ random = {{ seed = 1, within = [-1, 1] }} }}\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n[law.adaptive]\n\
+             damping.bandwidth_per_s = {damping}\nadaptation_gain.bandwidth_per_s = {adaptation}\nestimate_start.scaled = 0.8\n\
+             [control]\nsample_hz = 100\nvelocity.filtered_difference.cut_off_hz = 20\n[network]\nedges.ring = {{}}\n"
+        )
+    };
+    let folder = folder();
+    for (damping, adaptation, gain) in [(3.0, 5.0, "Γ"), (40.0, 0.01, "K")] {
+        fs::write(folder.path().join("arms.toml"), arms(damping, adaptation)).unwrap();
+        let said = stdout(&forwardstep(&folder, &["check", "arms.toml"]));
+        let note = said.lines().find(|line| line.starts_with("note: `sample_hz`")).unwrap_or_else(|| panic!("{said}"));
+        assert!(note.ends_with(&format!("let {gain} be smaller")), "{note}");
     }
 }

@@ -34,6 +34,14 @@ fn regress_no_output_replaces_a_file_of_somebody_else() {
     }
     fs::write(path("found.toml"), text).unwrap();
     forwardstep(&folder, &["attack", "24-complex-roots", "--seconds", "1", "--out", "found.toml"]).code(2);
+    #[cfg(unix)]
+    {
+        // Who writes into a pipe waits until somebody reads.
+        let made = std::process::Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap();
+        assert!(made.success());
+        let unread = stderr(&forwardstep(&folder, &["check", "own.toml", "--certificate", "pipe"]).code(2));
+        assert!(unread.contains("`pipe` is a pipe from which nobody reads"), "{unread}");
+    }
     let missing = stderr(&forwardstep(&folder, &["check", "own.toml", "--certificate", "no/x.json"]).code(2));
     assert!(missing.contains("there is no folder `no`") && missing.contains("make it first"), "{missing}");
 }

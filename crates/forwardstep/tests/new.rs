@@ -265,6 +265,16 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
     assert!(told.contains("but hinge of arm-") && told.contains("where its effort limit is 0.1 N"), "{told}");
     let text = fs::read_to_string(folder.path().join("weak.toml")).unwrap();
     assert!(text.contains("\n# In the trial hinge of arm-") && text.contains("`enforce_limits = true`"), "{text}");
+    // Gains that need no more than there is are taken where others would.
+    fs::write(
+        folder.path().join("fair.urdf"),
+        PENDULUM.replace("LIMIT", "3").replace("DAMPING", "0").replace("effort=\"100\"", "effort=\"5\""),
+    )
+    .unwrap();
+    let told = stderr(&forwardstep(&folder, &["new", "fair.toml", "--robot", "fair.urdf", "--agents", "2"]).success());
+    assert!(told.contains("where its effort limit is 5 N"), "{told}");
+    let text = fs::read_to_string(folder.path().join("fair.toml")).unwrap();
+    assert!(!text.contains("In the trial"), "{told}{text}");
     forwardstep(&folder, &["run", "weak.toml"]).success();
     forwardstep(&folder, &["new", "untried.toml", "--robot", "light.urdf", "--agents", "2", "--untried"]).success();
 }

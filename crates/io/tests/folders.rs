@@ -102,6 +102,27 @@ fn what_no_file_can_replace_is_found_before_the_run() {
     }
 }
 
+/// What a link leads to is not the run's, whoever writes: a run, a report, or who copies inputs.
+#[cfg(unix)]
+#[test]
+fn regress_nothing_is_written_or_removed_through_a_folder_that_is_a_link() {
+    let (setup, outcome) = two_arms();
+    for (name, file) in [("plots", "positions.svg"), ("inputs", "manifest.json")] {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, outside] = ["run", "outside"].map(|name| folder.path().join(name));
+        fs::create_dir(&outside).unwrap();
+        fs::write(outside.join(file), "mine").unwrap();
+        write(&path, &setup, &outcome);
+        drop(fs::remove_dir_all(path.join(name)));
+        std::os::unix::fs::symlink(&outside, path.join(name)).unwrap();
+        let error = RunFolder::create(&path, true).unwrap_err();
+        assert!(matches!(&error, OutputError::InTheWay { path: at, .. } if *at == path.join(name)), "{name}: {error}");
+        assert!(error.to_string().contains("a link to another folder"), "{error}");
+        assert_eq!(RunFolder::open(&path).is_err(), name == "plots");
+        assert_eq!(fs::read_to_string(outside.join(file)).unwrap(), "mine");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_table_of_another_length_is_not_read() {

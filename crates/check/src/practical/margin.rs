@@ -42,6 +42,9 @@ pub struct SamplingMargin {
     /// Whether the loop as a whole was seen to decay, with references that answer s: with z frozen, as σ has it, a mode that is as fast as they are
     /// grows sooner than it does.
     pub held_by_references: bool,
+    /// The largest root of any reference, 1/s, where it is faster than the fastest mode at the start: σ freezes references, which then answer sooner
+    /// than s decays.
+    pub faster_root_per_s: Option<f64>,
     /// How many adaptive agents follow targets of their own. They adapt with the s of the sample that gave Y, for which no margin is
     /// known: their σ is that of the damping alone.
     pub adaptation_left_out: usize,
@@ -66,6 +69,16 @@ pub struct MarginAt {
     pub fastest_per_s: f64,
 }
 
+/// The largest distance from zero of the roots of any agent's reference, 1/s.
+fn fastest_root_per_s(setup: &Setup) -> Option<f64> {
+    let all = setup.agents.iter().flat_map(|agent| {
+        let pairs =
+            agent.roots_per_s.pairs.iter().map(|pair| (pair.real * pair.real + pair.imaginary * pair.imaginary).sqrt());
+        agent.roots_per_s.real.iter().copied().chain(pairs)
+    });
+    all.reduce(f64::max)
+}
+
 /// Where a margin is looked at.
 struct Looked {
     agent: usize,
@@ -87,9 +100,10 @@ impl SamplingMargin {
         SamplingMargin::on(setup, &way(setup))
     }
 
-    /// Whether it speaks of every agent: all are under (6)–(7).
-    pub fn is_of_all(setup: &Setup) -> bool {
-        setup.agents.iter().all(is_lagrangian)
+    /// Whether it speaks of every agent, and is not outrun by references: all are under (6)–(7), and no root is faster than their damping.
+    pub fn is_enough(setup: &Setup) -> bool {
+        let outrun = || SamplingMargin::of(setup).is_none_or(|margin| margin.faster_root_per_s.is_some());
+        setup.agents.iter().all(is_lagrangian) && !outrun()
     }
 
     /// The same with states on the way of the agents.
@@ -117,6 +131,7 @@ impl SamplingMargin {
             recommended_s: longest(RECOMMENDED_MARGIN),
             anywhere: anywhere_per_s.map(|rate| period_s * rate / hold.largest_gain(period_s)),
             held_by_references: false,
+            faster_root_per_s: fastest_root_per_s(setup).filter(|root| *root > start.fastest_per_s),
             adaptation_left_out: learners.filter(|agent| setup.agents[*agent].law.is::<Adaptive>()).count(),
             start,
             worst,
@@ -128,6 +143,17 @@ impl SamplingMargin {
     pub fn longest_period_s(setup: &Setup, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
         let looked = looked(setup, &way(setup));
         if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
+    }
+
+    /// Which gain makes σ what it is, as it is to be made smaller: `K`, `Γ`, or both.
+    pub fn too_large(&self) -> &'static str {
+        let MarginAt { sigma, damping_sigma, .. } = self.worst;
+        match (damping_sigma > RECOMMENDED_MARGIN, damping_sigma > 0.9 * sigma) {
+            (true, true) => "K",
+            (true, false) => "K and Γ",
+            (false, true) => "K",
+            (false, false) => "Γ",
+        }
     }
 
     /// Inadequate only where a mode is unstable at the start of an agent; not shown where one is in another state, or

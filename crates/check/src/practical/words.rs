@@ -200,8 +200,9 @@ fn whole(found: &WholeLoop) -> String {
     };
     let meaning = match (found.lasting_per_s(), found.start_per_s(), found.amplified()) {
         _ if let Some(t_s) = found.trial.lost_s => format!(
-            "in a trial the agents have run away by {} s, which they do not where samples are fast; sample faster, or adapt more slowly",
-            rounded(t_s)
+            "in a trial the agents have run away by {} s, which they do not where samples are fast; sample faster{}",
+            rounded(t_s),
+            if found.adapts { ", or adapt more slowly" } else { ", or let the roots be slower" }
         ),
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
@@ -278,5 +279,11 @@ fn periods(margin: &SamplingMargin) -> String {
         || format!("no period brings it below {RECOMMENDED_MARGIN}, which is recommended"),
         |period_s| format!("keep it below {RECOMMENDED_MARGIN}, a period of {} ms", ms(period_s)),
     );
-    format!("it reaches 1 at a period of {} ms; {half}", ms(longest_s))
+    let faster = margin.faster_root_per_s.map_or_else(String::new, |root| {
+        format!(
+            "; references with roots of up to {}/s are faster than that mode and may need shorter periods, of which whole-loop speaks",
+            rounded(root)
+        )
+    });
+    format!("it reaches 1 at a period of {} ms; {half}{faster}", ms(longest_s))
 }

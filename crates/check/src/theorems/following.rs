@@ -87,11 +87,11 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
         FollowingDesign::Swarm { coupling } => hypotheses.extend(swarm::hypotheses(setup, following, coupling)),
         // It is integrated as it stands, whatever its weights do. How far it stays behind is known of constant ones.
         FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. } => {
-            hypotheses.extend((over == Over::Late).then(|| constant_weights(setup)));
+            hypotheses.extend((over == Over::Late).then(|| constant_weights(setup, true)));
             hypotheses.push(stable(following));
         }
         FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration => {
-            hypotheses.push(constant_weights(setup));
+            hypotheses.push(constant_weights(setup, false));
             hypotheses.push(stable(following));
         }
     }

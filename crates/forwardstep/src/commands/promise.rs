@@ -100,6 +100,10 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     for notice in &scenario.notices {
         console.line(format_args!("{FAIR}note{FAIR:#}: {notice}"));
     }
+    // What is only checked may be too long to be run.
+    if let Err(refused) = scenario.check_recording() {
+        console.line(format_args!("{FAIR}note{FAIR:#}: `forwardstep run` refuses it: {refused}"));
+    }
 }
 
 /// The practical verdicts, which are not the paper's.

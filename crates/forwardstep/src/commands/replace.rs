@@ -27,6 +27,11 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
             let said = format!("`{}` already exists, and this command did not write it", shown(path));
             Err(Plain::with_help(said, Some("give another name; it would be lost")))
         }
+        // Who writes into a pipe waits until somebody reads.
+        Ok(_) if is_unread(path) => Err(Plain::with_help(
+            format!("`{}` is a pipe from which nobody reads", shown(path)),
+            Some("start who reads it first, or name a file"),
+        )),
         // A terminal, a pipe, or nothing.
         Ok(_) => Ok(()),
         Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -35,6 +40,21 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
         }
         Err(error) => Err(refused(path, &error)),
     }
+}
+
+#[cfg(unix)]
+fn is_unread(path: &Path) -> bool {
+    use rustix::fs::{Mode, OFlags, open};
+    use std::os::unix::fs::FileTypeExt;
+
+    let flags = OFlags::WRONLY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo())
+        && open(path, flags, Mode::empty()).is_err_and(|error| error == rustix::io::Errno::NXIO)
+}
+
+#[cfg(not(unix))]
+fn is_unread(_: &Path) -> bool {
+    false
 }
 
 fn refused(path: &Path, error: &io::Error) -> Plain<String> {

@@ -260,3 +260,25 @@ fn regress_a_value_that_only_s_zero_leads_to_is_said_to_be_that() {
     let text = blind("estimate_start_kg = 2", fixed);
     assert!(text.contains("value agreed upon (") && !text.contains("moves it"), "{text}");
 }
+
+/// A delay of a log that grows like t is bounded by the end of the log alone.
+#[test]
+fn regress_a_delay_held_for_half_of_the_run_is_bounded_by_the_run_alone() {
+    let here = folder();
+    let scenario = "format = 2\ntime.end_s = 20\n[[agents]]\nname = \"a\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 1 }\n\
+        start.position_m = [[0], [1]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n[law.known]\ndamping.gain = 20\n\
+        [network]\ndelay.hold_log.file = \"holds.csv\"\nedges.ring = {}\n";
+    fs::write(here.path().join("own.toml"), scenario).unwrap();
+    let holds = |held: &dyn Fn(u32) -> u32| {
+        let rows = (0..20).map(|t| format!("a-1,a-2,1,{t},{0}\na-2,a-1,1,{t},{0}\n", held(t)));
+        format!("from,to,hold,t_s,delay_s\n{}a-1,a-2,1,20,\na-2,a-1,1,20,\n", rows.collect::<String>())
+    };
+    for (text, status, words) in [
+        (holds(&|t| t), 1, "the run is not twice as long"),
+        (holds(&|t| t.min(10)), 0, "no delay exceeds 10 s until the end of the run at 20 s"),
+    ] {
+        fs::write(here.path().join("holds.csv"), text).unwrap();
+        let said = stdout(&forwardstep(&here, &["check", "own.toml"]).code(status));
+        assert!(said.contains(words), "{said}");
+    }
+}

@@ -13,7 +13,7 @@ const joints = Array.from({ length: mostAxes }, (_, axis) => {
   const owners = agents.filter((a) => axis < a.axes.length);
   return { axis, name: SAME(owners.map((a) => a.axes[axis].name)) ?? String(axis + 1), units: owners.map((a) => a.axes[axis].units) };
 });
-const unitOf = (axis, read) => [...new Set((joints[axis]?.units ?? []).map(read))].join(" or ");
+const unitOf = (axis, read) => unitsOf((joints[axis]?.units ?? []).map(read));
 
 // Of more agents than this quantiles are drawn, and curves of those that are chosen.
 const MOST_CURVES = 24;
@@ -163,7 +163,7 @@ const cards = {
         series: [
           ...axes.map((k, axis) => ({ label: d.names[axis], colour: ramp(axis, axes.length), width: 1.1, values: data.values("main", k, true) })),
           ...(d.predicted == null ? [] : [{ label: "predicted", keyed: true, first: true, colour: colour("--ink"), dash: [6, 4], width: 1.4, values: data.values("main", d.predicted, true) }]),
-          { label: axes.length ? "largest" : "disagreement", first: true, colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
+          { label: axes.length ? "largest" : d.word, first: true, colour: colour("--ink"), width: 2.2, values: data.values("main", d.overall, true) },
         ],
       };
     },
@@ -177,7 +177,8 @@ const cards = {
     build: (picks) => {
       const built = velocity.build(picks);
       const z = signals.reference[0] && picks[0] != null ? ofAgents(signals.reference[0], +picks[0], { suffix: ", z", dash: [4, 3], width: 1.1 }) : [];
-      return { ...built, series: [...built.series, ...z] };
+      const unit = z.length ? unitOf(+picks[0], (u) => u.reference[0]) : built.unit;
+      return { ...built, unit: unit === built.unit ? unit : `${built.unit || "1"}, z in ${unit || "1"}`, series: [...built.series, ...z] };
     },
   },
   error: perJoint(signals.s, (u) => u.s),
@@ -255,7 +256,7 @@ const ganttCard = () => {
   const most = Math.max(1, ...bars.map((b) => b[3]));
   const rowHeight = rows.length > 40 ? 11 : 19;
   const names = [...(strip ? ["graph"] : []), ...rows.map((r) => r[0])];
-  const short = (name) => (name.length > 22 ? `${name.slice(0, 21)}…` : name);
+  const short = (name) => shortName(name, 22);
   const width = Math.min(innerWidth < 640 ? 110 : 170, 16 + 6.4 * Math.max(4, ...names.map((n) => short(n).length)));
   const draw = (u) =>
     clipped(u, (ctx, scale) => {

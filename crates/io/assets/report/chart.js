@@ -3,6 +3,19 @@
 const charted = bodies.length > 0 && bodies.every((b) => b.kind === "point") && (bodies.every((b) => b.q.length === 1) || bodies.some((b) => b.q.length > 3));
 
 // One curve of each coordinate, at so many rows that all can be drawn again and again.
+// Of very many curves what shares of them are below, at the same rows; none where they are few or not known at all rows.
+const BANDS = [0.1, 0.5, 0.9];
+const bandsOf = (curves) => {
+  if (curves.length <= 40 || curves.some(({ points }) => points.some(([, v]) => !Number.isFinite(v)))) return [];
+  const row = new Float64Array(curves.length);
+  const bands = BANDS.map((share) => ({ share, points: [] }));
+  curves[0].points.forEach(([t], k) => {
+    curves.forEach(({ points }, c) => (row[c] = points[k][1]));
+    row.sort();
+    for (const { share, points } of bands) points.push([t, row[Math.round(share * (row.length - 1))], 0]);
+  });
+  return bands;
+};
 const chart = (() => {
   if (!charted) return null;
   const curves = bodies.flatMap((body) => body.q.map((series, axis) => ({ body, axis, series, target: body.target[axis] ?? null, dash: [[], [7, 3], [2, 2], [7, 2, 2, 2]][axis % 4] })));
@@ -17,8 +30,8 @@ const chart = (() => {
   const size = outliers(all.map((values) => ({ values })))?.usual ?? Infinity;
   let [low, high] = [null, null];
   for (const v of all.flat()) if (v !== null && Math.abs(v) <= size) [low, high] = [low === null ? v : Math.min(low, v), high === null ? v : Math.max(high, v)];
-  const units = new Set(bodies.filter((b) => b.vertex < agents.length).flatMap((b) => agents[b.vertex].axes.map((axis) => axis.units.q)).filter(Boolean));
-  return { curves, range: linearRange(null, low, high), unit: [...units].join(" or "), several: curves.length > bodies.length };
+  const unit = unitsOf(bodies.filter((b) => b.vertex < agents.length).flatMap((b) => agents[b.vertex].axes.map((axis) => axis.units.q)));
+  return { curves, range: linearRange(null, low, high), unit, bands: bandsOf(curves), several: curves.length > bodies.length };
 })();
 const CHART_EDGES = { left: 66, right: 24, top: 46, bottom: 48 };
 
@@ -92,7 +105,7 @@ const drawChartGrid = (pen, see, colours) => {
     line(left, y, right, y);
     word(tick(v, step), left - 8, y, "right", "middle");
   });
-  word(chart.unit ? `position in ${chart.unit}` : "position", 10, top - 24, "left", "alphabetic");
+  word(chart.unit ? `position in ${chart.unit}` : "position", 10, top - 11, "left", "alphabetic");
   Object.assign(pen, { textAlign: "left", textBaseline: "alphabetic" });
 };
 
@@ -109,7 +122,7 @@ const drawChartCurves = (pen, see, frame, colours, hidden, alone) => {
       if (wanted.length && (!many || picked)) strokeLine(pen, see, { points: wanted, dash: [5, 4], width: 1.1, alpha: 0.7 }, colours.muted);
       const faint = alone !== null && !picked;
       if (many && !picked) {
-        strokeLine(pen, see, { points, dash, width: 0.7, alpha: faint ? 0.12 : 0.35 }, stroke);
+        strokeLine(pen, see, { points, dash, width: 0.7, alpha: (faint ? 0.12 : 0.35) * Math.min(1, Math.sqrt(60 / chart.curves.length)) }, stroke);
         continue;
       }
       const value = data.at("scene", series, frame.place);
@@ -119,6 +132,7 @@ const drawChartCurves = (pen, see, frame, colours, hidden, alone) => {
       strokeLine(pen, see, { points: [...past, ...here], dash, width: picked ? 2.6 : 1.8, alpha: faint ? 0.3 : 1 }, stroke);
       if (next >= 0) strokeLine(pen, see, { points: [...here, ...points.slice(next)], dash, width: 1.2, alpha: faint ? 0.12 : 0.3 }, stroke);
     }
+    for (const { share, points } of chart.bands) strokeLine(pen, see, { points, width: share === 0.5 ? 2.2 : 1.2 }, share === 0.5 ? colours.ink : colours.soft);
   });
 };
 
@@ -127,7 +141,7 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
   const few = chart.curves.length <= 24;
   const named = frame.nodes.filter(({ body }) => few || body.vertex === hovered || body.vertex === alone || body.leads);
   const axisName = ({ body, axis }) => (chart.several ? `, ${agents[body.vertex]?.axes[axis]?.name ?? axis + 1}` : "");
-  const short = (name) => (name.length > 24 ? `${name.slice(0, 23)}…` : name);
+  const short = (name) => shortName(name, 24);
   const words = named.map((node) => ({ ...see.project(node.at), text: short(leading(node.body.name, node.body.leads)) + axisName(node), dot: colours.agents[node.body.vertex] }));
   words.sort((a, b) => a.y - b.y);
   const apart = 15;
@@ -137,7 +151,7 @@ const drawChartWords = (pen, see, frame, colours, { hovered, alone }) => {
   for (let k = words.length - 1, most = top + tall; k >= 0; k--, most -= apart) words[k].y = Math.min(words[k].y, most);
   pen.font = WORDS;
   const widest = Math.max(0, ...words.map(({ text }) => pen.measureText(text).width));
-  let unnamed = 0;
+  let unnamed = few ? 0 : frame.nodes.length - named.length;
   for (const { x, y, text, dot } of words) {
     if (x < see.box.left - 1 || x > see.width) continue;
     if (y < 8) {

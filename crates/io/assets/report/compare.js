@@ -2,8 +2,25 @@
 
 const runs = index.runs.map((run, k) => {
   const data = dataOf(run, document.getElementById(`block-${k}`).textContent);
-  return { ...run, k, data, picture: pictureIn(run, data, run.agents, (name) => colour(name, document.querySelector(`.scene.run${k}`))), shown: true };
+  const within = (name) => colour(name, document.querySelector(`.scene.run${k}`));
+  const drawn = (frame) => pictureIn({ ...run, frame }, data, run.agents, within);
+  return { ...run, k, data, drawn, picture: drawn(), shown: true };
 });
+// What is alike is seen from as far away, unless one of them would be lost in the picture of another.
+const MOST_TIMES_LARGER = 3;
+const alike = new Map();
+for (const run of runs) {
+  const kinds = [...new Set(run.picture.bodies.map((b) => b.kind))].sort().join();
+  if (!run.picture.charted) alike.set(kinds, [...(alike.get(kinds) ?? []), run]);
+}
+for (const same of [...alike.values()].filter((some) => some.length > 1)) {
+  const worlds = same.map(({ picture }) => picture.world);
+  const corners = [[Math.min, "low"], [Math.max, "high"]].map(([pick, end]) => [0, 1, 2].map((k) => pick(...worlds.map((own) => own[end][k]))));
+  const wide = Math.max(...[0, 1, 2].map((k) => corners[1][k] - corners[0][k]));
+  if (!(wide <= MOST_TIMES_LARGER * Math.min(...worlds.map(({ extent }) => extent)))) continue;
+  const spread = Math.max(...worlds.map((own) => own.spread));
+  for (const run of same) run.picture = run.drawn({ corners, spread });
+}
 const runColour = (run) => colour(`--run${run.k}`);
 
 // Plots: all times of all runs, and each run on straight lines between its own.
@@ -122,7 +139,7 @@ const side = (() => {
   slider.max = String(end);
   slider.disabled = play.disabled = end === 0;
   // What is measured where bodies stand, as the page of one run says it.
-  const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd());
+  const lengthOf = ({ picture, agents }) => (picture.bodies.some((b) => b.kind !== "point") ? " m" : ` ${unitsOf(agents.flatMap((a) => a.axes.map((x) => x.units.q)))}`.trimEnd());
   const views = [...document.querySelectorAll(".scene")].map((card, k) => {
     const canvas = element("canvas");
     canvas.setAttribute("role", "img");
@@ -152,7 +169,7 @@ const side = (() => {
     // A run that broke down may have ended after its last row.
     const over = now.t > run.until_s ? `Recorded until ${number(run.until_s, 4)} s. ` : "";
     const size = picture.charted ? "Positions over time. " : picture.floorGrid.step ? `Squares of ${number(picture.floorGrid.step, 2)}${unit}. ` : "";
-    const more = [unnamed > 0 && unnamedWords(unnamed), marksOf(picture.bodies).join("; "), picture.lostWords(frame)].filter(Boolean).map((words) => `${words[0].toUpperCase()}${words.slice(1)}. `);
+    const more = [unnamed > 0 && unnamedWords(unnamed, frame.nodes.length), marksOf(picture.bodies).join("; "), picture.lostWords(frame)].filter(Boolean).map((words) => `${words[0].toUpperCase()}${words.slice(1)}. `);
     const text = `${over}${size}${more.join("")}${picture.graphWords(heard)}`;
     if (words.textContent !== text) words.textContent = text;
     canvas.setAttribute("aria-label", `${run.name} at ${number(t, 4)} s: ${picture.bodies.length} in space`);

@@ -22,16 +22,19 @@ const dataOf = (index, block) => {
   const estimateStart = g.main * g.main_series;
   const delayStart = estimateStart + g.estimates * g.estimate_series;
   const grids = {
-    main: { t: times.subarray(0, g.main), start: 0 },
-    estimates: { t: times.subarray(g.main, g.main + g.estimates), start: estimateStart },
-    delays: { t: times.subarray(g.main + g.estimates, g.main + g.estimates + g.delays), start: delayStart },
-    scene: { t: times.subarray(g.main + g.estimates + g.delays), start: delayStart + g.delays * g.delay_series },
+    main: { t: times.subarray(0, g.main), start: 0, origins: g.origins.main },
+    estimates: { t: times.subarray(g.main, g.main + g.estimates), start: estimateStart, origins: g.origins.estimates },
+    delays: { t: times.subarray(g.main + g.estimates, g.main + g.estimates + g.delays), start: delayStart, origins: {} },
+    scene: { t: times.subarray(g.main + g.estimates + g.delays), start: delayStart + g.delays * g.delay_series, origins: g.origins.scene },
   };
+  // Series that stay far from zero are stored less where they are: single precision has seven digits.
+  const originOf = (grid, k) => grids[grid].origins[k] ?? 0;
   // A gap where a number is missing, or cannot stand on a logarithmic axis.
   const values = (grid, k, log) => {
     const { t, start } = grids[grid];
     const from = start + k * t.length;
-    const list = Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || v > 0) ? v : null));
+    const origin = originOf(grid, k);
+    const list = Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || origin + v > 0) ? origin + v : null));
     return Object.assign(list, { beyond_s: beyond(grid, k) });
   };
   // From when on a number is larger than any of single precision; null if it never is.
@@ -45,7 +48,7 @@ const dataOf = (index, block) => {
   const at = (grid, k, { row, part }) => {
     const { t, start } = grids[grid];
     const here = numbers[start + k * t.length + row];
-    return part === 0 ? here : here + part * (numbers[start + k * t.length + row + 1] - here);
+    return originOf(grid, k) + (part === 0 ? here : here + part * (numbers[start + k * t.length + row + 1] - here));
   };
   // The row before a time, and how far it is to the next.
   const place = (grid, time) => {
@@ -92,7 +95,19 @@ const number = (v, digits = 4) => {
 const timePlaces = (end) => (end > 0 ? Math.max(0, Math.min(12, 4 - Math.ceil(Math.log10(end)))) : 0);
 const timeOf = (t, end) => `t = ${t.toFixed(timePlaces(end))} s of ${number(end, 6)} s`;
 
-const unnamedWords = (count) => `and ${count} more without room for ${count === 1 ? "its name" : "their names"}`;
+const unnamedWords = (count, all) => (count === all ? "no room for names: point at one" : `and ${count} more without room for ${count === 1 ? "its name" : "their names"}`);
+// What tells long names apart often stands at their end.
+const shortName = (name, most) => {
+  const letters = [...name];
+  if (letters.length <= most) return name;
+  const end = Math.floor((most - 1) / 3);
+  return `${letters.slice(0, most - 1 - end).join("")}…${letters.slice(letters.length - end).join("")}`;
+};
+// Distinct units, for reading; what has none stands beside what has one.
+const unitsOf = (units) => {
+  const distinct = [...new Set(units)];
+  return distinct.length > 1 ? distinct.map((unit) => unit || "1").join(" or ") : distinct[0] ?? "";
+};
 // What marks in a picture mean, of those that it has.
 const marksOf = (bodies) => {
   const crafts = bodies.filter((b) => b.kind === "spacecraft");

@@ -55,13 +55,18 @@ const heardAt = (time, pace = 0) => {
 // Of very many edges so many are drawn, spread evenly.
 const MOST_ARROWS = 2000;
 // Multiples of the golden ratio leave nobody out, in whatever order edges come.
-const drawnOf = (edges) => {
-  if (edges.length <= MOST_ARROWS) return edges;
-  const part = (k) => (k * 0.6180339887498949) % 1;
-  const order = edges.map((_, k) => k).sort((a, b) => part(a) - part(b));
-  const drawn = new Set(order.slice(0, MOST_ARROWS));
-  return edges.filter((_, k) => drawn.has(k));
-};
+const drawnOf = (() => {
+  const kept = new Map();
+  const pick = (count) => {
+    const part = (k) => (k * 0.6180339887498949) % 1;
+    return Array.from({ length: count }, (_, k) => k).sort((a, b) => part(a) - part(b)).slice(0, MOST_ARROWS).sort((a, b) => a - b);
+  };
+  return (edges) => {
+    if (edges.length <= MOST_ARROWS) return edges;
+    if (!kept.has(edges.length)) kept.set(edges.length, pick(edges.length));
+    return kept.get(edges.length).map((k) => edges[k]);
+  };
+})();
 
 const someNames = (list) => (list.length > 4 ? `${list.slice(0, 3).join(", ")} and ${list.length - 3} more` : list.join(", "));
 const ageWords = ({ age, between }) => (between ? `between ${number(between[0], 3)} and ${number(between[1], 3)} s` : `${number(age, 3)} s`);
@@ -105,14 +110,15 @@ const wideIn = (() => {
 const angleOf = (v) => 2 * Math.PI * (v / Math.max(1, vertices) - 0.25);
 // Where everybody stands in a picture of a size, and what is written beside: names as long as there is room, none over another.
 const graphLayout = (width, height) => {
-  const named = vertices <= 24;
+  const named = vertices <= MOST_NAMES;
   const longest = Math.max(30, 0.5 * width - 60);
   const shortened = (text) => {
     let letters = [...text];
-    while (letters.length > 1 && wideIn(`${letters.join("")}…`) > longest) letters = letters.slice(0, -1);
-    return letters.length < [...text].length ? `${letters.join("")}…` : text;
+    const most = () => shortName(text, letters.length);
+    while (letters.length > 4 && wideIn(most()) > longest) letters = letters.slice(0, -1);
+    return most();
   };
-  const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
+  const short = (name) => shortName(name, 16);
   const texts = bodies.map((body) => (named ? shortened(leading(short(body.name), body.leads)) : ""));
   let rx = named ? 1.75 * (0.5 * height - 28) : 0.5 * height - 8;
   bodies.forEach((_, v) => {
@@ -136,10 +142,12 @@ const graphLayout = (width, height) => {
     return { ...place, text: { ...at, anchor, said: texts[v] } };
   });
 };
+// Of more no name is written, and nodes are small.
+const MOST_NAMES = 40;
 const graphIn = (place) => {
   const picture = svg("svg", { role: "img", class: "now" });
   const [arrows, dots, nodes] = [svg("g", {}), svg("g", {}), svg("g", {})];
-  const r = vertices > 24 ? 2.5 : 7;
+  const r = vertices > MOST_NAMES ? 2.5 : vertices > 24 ? 4.5 : 7;
   picture.append(arrows, dots, nodes);
   place.append(picture);
   let [places, shown, last] = [[], undefined, null];
@@ -171,6 +179,9 @@ const graphIn = (place) => {
     picture.classList.toggle("unknown", graph === null);
     if (shown !== graph) {
       shown = graph;
+      // So many arrows would hide each other, and the nodes.
+      const faint = edges.length > 300 ? Math.max(0.08, 300 / Math.min(edges.length, MOST_ARROWS)) : 1;
+      for (const ink of ["stroke-opacity", "fill-opacity"]) arrows.setAttribute(ink, faint.toFixed(2));
       arrows.replaceChildren(...drawnOf(edges).map(({ from, to }) => {
         const { p, q, ux, uy, far } = along(from, to);
         const head = Math.min(7, 0.4 * far);
@@ -189,5 +200,6 @@ const graphIn = (place) => {
   laidOut();
   const again = () => (laidOut(), last && draw(last));
   new ResizeObserver(again).observe(place);
-  return Object.assign(draw, { again });
+  const unnamed = () => places.filter(({ text }) => text === null).length;
+  return Object.assign(draw, { again, unnamed });
 };

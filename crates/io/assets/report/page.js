@@ -55,7 +55,7 @@ const fill = (card, height) => {
   if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
   const banded = isBanded() && built.series.some((s) => QUANTILES.some(([, label]) => label === s.label));
-  if (banded) canvas.append(element("p", { className: "note", textContent: `${shownCurves()} agents, by quantiles at each time. Curves are drawn of up to ${MOST_CURVES}: hide others in the legend, or choose one beside the clock.` }));
+  if (banded) canvas.append(element("p", { className: "note" }, `${shownCurves()} agents, by quantiles at each time. `, element("span", { className: "screen", textContent: `Curves are drawn of up to ${MOST_CURVES}: hide others in the legend, or choose one beside the clock.` })));
   if (built.key || banded) card.append(key(built.series, mine.plot));
   offer(card, mine.plot);
 };

@@ -160,7 +160,7 @@ const drawEdges = (ctx, see, frame, colours, heard) => {
   const at = new Map(frame.nodes.map(({ body, at }) => [body.vertex, see.project(at)]));
   // Over time they all lie beside the same line.
   const many = heard.edges.length > (charted ? 24 : 120);
-  for (const { from, to, age, share, flights } of heard.edges) {
+  for (const { from, to, age, share, flights } of drawnOf(heard.edges)) {
     const b = at.get(to);
     if (!at.has(from) || !b) continue;
     // Over time an edge begins where its sender was when it said what is heard.
@@ -173,7 +173,7 @@ const drawEdges = (ctx, see, frame, colours, heard) => {
     const inset = Math.min(13, 0.3 * far);
     const [p, q] = [{ x: a.x + inset * ux - 3 * uy, y: a.y + inset * uy + 3 * ux }, { x: b.x - inset * ux - 3 * uy, y: b.y - inset * uy + 3 * ux }];
     const c = { x: 0.5 * (a.x + b.x) - bend * uy, y: 0.5 * (a.y + b.y) + bend * ux };
-    ctx.globalAlpha = many ? 0.12 : 0.95 - 0.25 * share;
+    ctx.globalAlpha = many ? Math.max(0.02, 0.12 * Math.min(1, 400 / heard.edges.length)) : 0.95 - 0.25 * share;
     ctx.strokeStyle = ctx.fillStyle = colours.agents[from];
     ctx.lineWidth = many ? 1 : 1.8;
     ctx.beginPath();
@@ -268,12 +268,15 @@ const drawWords = (ctx, see, frame, colours, { hovered, alone }) => {
   ctx.textBaseline = "alphabetic";
   ctx.lineJoin = "round";
   const named = bodies.length <= 24;
-  const short = (name) => (name.length > 24 ? `${name.slice(0, 23)}…` : name);
+  const short = (name) => shortName(name, 24);
   const order = [...frame.nodes].sort((a, b) => (b.body.leads || b.body.vertex === hovered) - (a.body.leads || a.body.vertex === hovered));
   let unnamed = 0;
   for (const { body, label } of order) {
     const picked = body.vertex === hovered || body.vertex === alone || body.leads;
-    if (!named && !picked) continue;
+    if (!named && !picked) {
+      unnamed += 1;
+      continue;
+    }
     const s = see.project(label);
     if (!s) continue;
     const text = leading(short(body.name), body.leads);

@@ -32,7 +32,7 @@ const pathUnit = (() => {
   const kinds = new Set(spatial.map((b) => b.kind));
   if (kinds.has("arm") || kinds.has("vehicle")) return "m";
   const of = spatial.filter((b) => b.kind === "point" && b.vertex < agents.length).flatMap((b) => agents[b.vertex].axes.map((axis) => axis.units.q));
-  return [...new Set(of)].join(" or ");
+  return unitsOf(of);
 })();
 
 // Its card stands beside what is drawn over another.

@@ -139,7 +139,8 @@ const world = (() => {
     if (body.kind === "spacecraft") for (const x of [-1, 1]) points.push(add(base, [x, x, x]));
     if (layout.rails.has(body)) points.push([-0.08 * Math.min(24, body.name.length), base[1] - layout.gap / 2, 0], [RAIL, base[1] + layout.gap / 2, 0]);
   }
-  const shown = points.filter((p) => p && finite(p));
+  // Pictures side by side have one frame.
+  const shown = [...points, ...(index.frame?.corners ?? [])].filter((p) => p && finite(p));
   const { low, high } = boxOf(shown);
   const extent = Math.max(...[0, 1, 2].map((k) => high[k] - low[k])) || 1;
   // Those that travel together, far from where they began, are followed.
@@ -148,6 +149,7 @@ const world = (() => {
     const here = boxOf(bodies.map((body) => trailOf(body)[k]).filter(Boolean));
     spread = Math.max(spread, ...[0, 1, 2].map((i) => here.high[i] - here.low[i]));
   }
+  spread = Math.max(spread, index.frame?.spread ?? 0);
   const follows = bodies.length > 1 && spread > 1e-9 * extent && spread < 0.4 * extent;
   return { points: shown, low, high, extent, spread, follows, symbol: follows ? 0.14 * spread : 0.045 * extent };
 })();

@@ -1,5 +1,8 @@
 // The clock: one time for the picture, the graph and all plots, whoever moves it.
 
+// As many rows as leave doubt about what is between them.
+const FEW_ROWS = 20;
+
 const stage = (() => {
   const part = (id) => document.getElementById(id);
   const [view, slider, play, timeWords, rate, chosen] = ["view", "slider", "play", "time", "rate", "chosen"].map(part);
@@ -14,7 +17,8 @@ const stage = (() => {
   let asked = 0;
   let seen = null;
   let frames = 0;
-  let said = ""; // of the picture, whatever the time
+  let said = []; // of the picture, whatever the time
+  let slow = false;
   const watchers = [];
 
   slider.max = String(end);
@@ -33,15 +37,26 @@ const stage = (() => {
     drawEdges(pen, see, frame, colours, heard);
     return drawWords(pen, see, frame, colours, now);
   };
+  // What is to be said of the picture.
+  const notesOf = (frame, unnamed, flat) => [
+    unnamed > 0 && unnamedWords(unnamed, frame.nodes.length), ...said, lostWords(frame),
+    flat && scene.solids.length > 0 && "links as rods: shapes need light and depth",
+  ].filter(Boolean);
   // All of the picture at a time, projected.
   const paintAt = (pen, t, width, height) => {
     const frame = frameAt(t, hidden);
     pen.fillStyle = colour("--surface");
     pen.fillRect(0, 0, width, height);
     const unnamed = paint(pen, looking(width, height, frame.nodes), frame, heardAt(t), true);
-    if (unnamed === 0) return;
+    // What the page says beside the picture, from the last line upwards.
     Object.assign(pen, { font: WORDS, fillStyle: colours.muted });
-    pen.fillText(unnamedWords(unnamed), 8, height - 8);
+    const lines = [];
+    for (const part of notesOf(frame, unnamed, true)) {
+      const longer = lines.length ? `${lines.at(-1)}; ${part}` : part;
+      if (lines.length && pen.measureText(longer).width <= width - 16) lines[lines.length - 1] = longer;
+      else lines.push(part);
+    }
+    lines.reverse().forEach((line, k) => pen.fillText(line, 8, height - 8 - 15 * k));
   };
   const drawing = () => {
     const [width, height] = [view.clientWidth, view.clientHeight];
@@ -68,10 +83,8 @@ const stage = (() => {
   addEventListener("resize", () => (heardWords.style.minHeight = ""));
   // The corner in which the scale stands.
   const corner = { wide: 0, high: 0 };
-  new ResizeObserver(() => {
-    Object.assign(corner, { wide: view.clientWidth - tip.offsetLeft, high: view.clientHeight - tip.offsetTop });
-    ask();
-  }).observe(tip);
+  const measured = () => Object.assign(corner, { wide: view.clientWidth - tip.offsetLeft, high: view.clientHeight - tip.offsetTop });
+  new ResizeObserver(() => (measured(), ask())).observe(tip);
   const draw = () => {
     asked = 0;
     const [width, height, scale] = [view.clientWidth, view.clientHeight, Math.min(2, devicePixelRatio || 1)];
@@ -93,11 +106,11 @@ const stage = (() => {
     slider.value = String(now.t);
     slider.setAttribute("aria-valuetext", `${number(now.t, 4)} seconds`);
     graphPicture(heard);
-    const lost = lostWords(frame);
-    const where = [unnamed > 0 && unnamedWords(unnamed), said, lost].filter(Boolean).join("; ");
+    const where = [...notesOf(frame, unnamed, now.flat), ...(charted ? ["drag to set the clock"] : []), ...(slow ? ["projected, since light and depth are slow here"] : [])].join("; ");
     if (tip.textContent !== where) tip.textContent = where;
-    const text = graphWords(heard);
-    sayHeard(text);
+    const nameless = graphPicture.unnamed();
+    const words = nameless > 0 && vertices > 1 ? ` ${nameless === vertices ? "Names have no room" : `${nameless} names have no room`}: point at a node.` : "";
+    sayHeard(`${graphWords(heard)}${words}`);
     const graphs = scene.graphs.length;
     part("graph-when").textContent = `${heard.graph === null ? "unknown " : graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
     for (const plot of plots) plot.clock?.(now.t);
@@ -124,7 +137,7 @@ const stage = (() => {
     if (usual < 40) return;
     now.flat = true;
     lighting.layers.hidden = true;
-    said += "; projected, since light and depth are slow here";
+    slow = true;
   };
   // Whoever asked for less motion sees a picture every half second.
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -242,16 +255,17 @@ const stage = (() => {
     const led = scene.leader ? `, led by ${scene.leader.name}` : "";
     view.setAttribute("aria-label", charted ? `positions of ${bodies.length} over time${led}; time by keys` : `${bodies.length} in space (${kinds})${led}; turn and time by keys`);
     part("view-help").textContent = help();
-    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${[...new Set(agents.flatMap((a) => a.axes.map((x) => x.units.q)))].join(" or ")}`.trimEnd();
+    const unit = bodies.some((b) => b.kind !== "point") ? " m" : ` ${unitsOf(agents.flatMap((a) => a.axes.map((x) => x.units.q)))}`.trimEnd();
     const symbolic = bodies.some((b) => b.kind === "ship" || b.kind === "vehicle") ? "; bodies not to scale" : "";
     const size = floorGrid.step ? `squares of ${number(floorGrid.step, 2)}${unit}${symbolic}` : "";
-    said = charted ? "positions over time; drag to set the clock" : [size, ...marksOf(bodies)].filter(Boolean).join("; ");
+    const rows = sceneTimes.length > 1 && sceneTimes.length <= FEW_ROWS && `${sceneTimes.length} rows were recorded, with straight lines between them`;
+    said = [...(charted ? [chart.bands.length > 0 && "dark: median and tenths"] : [size, ...marksOf(bodies)]), rows].filter(Boolean);
   };
   describe();
   const themed = () => ((colours = sceneColours()), ask());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", themed);
   let flatBefore = now.flat;
-  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), graphPicture.again(), draw()));
+  addEventListener("beforeprint", () => ((flatBefore = now.flat), (now.flat = true), lighting && (lighting.layers.hidden = true), (colours = sceneColours()), graphPicture.again(), draw(), measured(), draw()));
   addEventListener("afterprint", () => ((now.flat = flatBefore), lighting && (lighting.layers.hidden = flatBefore), graphPicture.again(), themed()));
   lighting?.canvas.addEventListener("webglcontextlost", () => ((now.flat = true), (lighting.layers.hidden = true), ask()));
   // The picture reaches to the end of the window, below however many words stand above it.

@@ -1,6 +1,6 @@
 //! What a run came to, in plain words: whether what was to vanish did, how far it is, and what to change.
 
-use forwardstep_check::{Id, Report};
+use forwardstep_check::{Id, RECOMMENDED_MARGIN, Report};
 use forwardstep_sim::recording::{ClippedSamples, Ending, Signal};
 use forwardstep_sim::setup::Setup;
 
@@ -53,7 +53,9 @@ impl Conclusion {
         // What was nothing from the start has vanished as well.
         let reached = last < bound || last == 0.0;
         let trend = Trend::of(&record.outcome.recording.t_s, &series.overall);
-        let sentence = end.sentence(record.setup, reached, trend);
+        // A goal may ask for less than that nothing is left.
+        let vanished = last < VANISHED * largest || last == 0.0;
+        let sentence = end.sentence(record.setup, [reached, vanished], trend);
         let advice = if reached { Vec::new() } else { advice(record, metrics, trend, bound / last) };
         Some(Conclusion { reached, sentence, advice })
     }
@@ -107,7 +109,7 @@ impl End {
         Some(End { kind, axis, agents: agents_named, gap, speed })
     }
 
-    fn sentence(&self, setup: &Setup, reached: bool, trend: Trend) -> String {
+    fn sentence(&self, setup: &Setup, [reached, vanished]: [bool; 2], trend: Trend) -> String {
         let End { kind, axis, agents, gap, speed } = self;
         let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
         let first = agents.first().copied().unwrap_or(0);
@@ -120,9 +122,11 @@ impl End {
             (Gap::Error, false) => ("on target", format!("{size} from the target")),
         };
         if reached {
-            return format!("{done}: {so_far} at most");
+            let far = if vanished { "" } else { " as far as the goal asks" };
+            return format!("{done}{far}: {so_far} at most");
         }
         let still = match speed {
+            Some(0.0) if *kind == Gap::Disagreement => ", at rest".to_owned(),
             Some(speed) if *kind == Gap::Disagreement => {
                 format!(", still moving at {}", with_unit(*speed, unit(setup, first, Signal::Velocity, *axis)))
             }
@@ -223,10 +227,16 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
         && !matches!(trend, Trend::Falls(_))
         && s > if late { last } else { LEFT_OVER * last }
     {
-        advice.push(format!(
-            "robots do not follow their references, |s| is still {}: raise the damping, or see what acts on them",
-            about(s)
-        ));
+        // More damping is what samples bear least.
+        let coarse = metrics.watched.and_then(|watched| watched.sampling_margin).map(|margin| margin.sigma);
+        let change = match coarse.filter(|sigma| *sigma > RECOMMENDED_MARGIN) {
+            Some(sigma) => format!(
+                "samples are slow for the gains, with a margin σ of {}: sample faster, or let gains be smaller, as `forwardstep check` says which",
+                about(sigma)
+            ),
+            None => "raise the damping, or see what acts on them".to_owned(),
+        };
+        advice.push(format!("robots do not follow their references, |s| is still {}: {change}", about(s)));
     }
     if advice.is_empty() {
         advice.push("see `forwardstep check --predict` for how fast the design is without tracking errors".into());

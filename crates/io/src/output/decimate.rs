@@ -79,14 +79,14 @@ impl Grid {
     }
 
     /// The values of a signal at the grid's times; missing ones are NaN.
-    pub(crate) fn sample(&self, rows_t_s: &[f64], values: &[f64], may_jump: bool) -> Vec<f32> {
+    pub(crate) fn sample(&self, rows_t_s: &[f64], values: &[f64], may_jump: bool) -> Vec<f64> {
         let value = |row: usize| values.get(row).copied().unwrap_or(f64::NAN);
         let mut points = Vec::with_capacity(self.t_s.len());
         for place in &self.places {
             match place {
-                Place::Row(row) => points.push(value(*row) as f32),
+                Place::Row(row) => points.push(value(*row)),
                 Place::Bucket(rows) => points.extend(least_and_greatest(rows.clone(), value)),
-                Place::Break(at) => points.extend(at.sides(rows_t_s, value, may_jump).map(|v| v as f32)),
+                Place::Break(at) => points.extend(at.sides(rows_t_s, value, may_jump)),
             }
         }
         points
@@ -154,13 +154,13 @@ impl Break {
 }
 
 /// Both in the order in which they occur, leaving out what is not finite as long as anything is.
-fn least_and_greatest(rows: Range<usize>, value: impl Fn(usize) -> f64) -> [f32; 2] {
+fn least_and_greatest(rows: Range<usize>, value: impl Fn(usize) -> f64) -> [f64; 2] {
     let finite = || rows.clone().filter(|row| value(*row).is_finite());
     let least = finite().reduce(|a, b| if value(b) < value(a) { b } else { a });
     let greatest = finite().reduce(|a, b| if value(b) > value(a) { b } else { a });
     match (least, greatest) {
-        (Some(least), Some(greatest)) => [least.min(greatest), least.max(greatest)].map(|row| value(row) as f32),
-        _ => [f32::NAN; 2],
+        (Some(least), Some(greatest)) => [least.min(greatest), least.max(greatest)].map(value),
+        _ => [f64::NAN; 2],
     }
 }
 
@@ -205,7 +205,7 @@ mod tests {
         let grid = Grid::new(&t_s, &[0.5], 100);
         let place = grid.t_s.iter().position(|t| *t == 0.5).unwrap();
         let drawn =
-            |values: &[f64]| -> [f32; 2] { grid.sample(&t_s, values, true)[place..place + 2].try_into().unwrap() };
+            |values: &[f64]| -> [f64; 2] { grid.sample(&t_s, values, true)[place..place + 2].try_into().unwrap() };
         let right: Vec<f64> = (0..11).map(|k| if k < 5 { 1.0 } else { 2.0 }).collect();
         let left: Vec<f64> = (0..11).map(|k| if k <= 5 { 1.0 } else { 2.0 }).collect();
         assert_eq!(drawn(&right), [1.0, 2.0]);
@@ -234,7 +234,7 @@ mod tests {
         let drawn = grid.sample(&t_s, &values, false);
         assert_eq!(drawn.len(), grid.t_s.len());
         assert!(drawn.contains(&99.0) && drawn.contains(&-98.0) && !drawn.iter().any(|v| v.is_nan()));
-        assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0] as f32, values[99_999] as f32));
+        assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0], values[99_999]));
     }
 
     #[test]

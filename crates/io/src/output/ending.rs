@@ -20,7 +20,7 @@ pub fn ending_sentence(setup: &Setup, ending: &Ending) -> String {
         }
         Ending::CutOff { t_s } => {
             let t_s = number(rounded(*t_s));
-            format!("Was cut off at t = {t_s} s of {} s; everything until then was kept.", setup.time.end_s)
+            format!("Was cut off at t = {t_s} s of {} s, where its rows end.", setup.time.end_s)
         }
         Ending::BrokeDown(breakdown) => {
             let column = names::column_name(setup, breakdown.agent, breakdown.signal, breakdown.axis);

@@ -107,6 +107,7 @@ impl RunFolder {
             may_be_replaced(path)?;
         }
         in_the_way(path, FILES.into_iter().chain([JOURNAL, PAGE, DOCUMENT]))?;
+        unlinked(path, MANIFEST)?;
         folder.probe()?;
         Ok(folder)
     }
@@ -239,6 +240,7 @@ fn in_the_way<'n>(path: &Path, names: impl Iterator<Item = &'n str>) -> Result<(
     let way = |path: PathBuf, found: &'static str| Err(OutputError::InTheWay { path, found });
     for name in names {
         let (above, file) = name.rsplit_once('/').map_or(("", name), |(above, file)| (above, file));
+        unlinked(path, name)?;
         let above = path.join(above);
         if above.metadata().map_or_else(|_| above.is_symlink(), |found| !found.is_dir()) {
             return way(above, "no folder");
@@ -252,6 +254,15 @@ fn in_the_way<'n>(path: &Path, names: impl Iterator<Item = &'n str>) -> Result<(
         }
     }
     Ok(())
+}
+
+/// Refuses where a folder on the way to a file of a run is a link: what it leads to is not the run's.
+fn unlinked(path: &Path, name: &str) -> Result<(), OutputError> {
+    let above = Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty());
+    match above.map(|above| path.join(above)).find(|above| above.is_symlink()) {
+        Some(path) => Err(OutputError::InTheWay { path, found: "a link to another folder" }),
+        None => Ok(()),
+    }
 }
 
 pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
@@ -274,6 +285,7 @@ impl Staging<'_> {
     ) -> Result<Written, OutputError> {
         self.folder.ready()?;
         let (disk, path) = (self.folder.disk(), self.folder.path.join(name));
+        unlinked(&self.folder.path, name)?;
         let partial = self.folder.partial(name);
         if let Some(parent) = partial.parent() {
             disk.create_folders(parent).map_err(io_error(Action::CreateFolder, parent))?;
@@ -307,6 +319,7 @@ impl Staging<'_> {
         folder.ready()?;
         let earlier = inputs::of_earlier_run(&folder.path);
         let remove = |name: &str| {
+            unlinked(&folder.path, name)?;
             let path = folder.path.join(name);
             match folder.disk().remove_file(&path) {
                 Err(error) if error.kind() != io::ErrorKind::NotFound => {

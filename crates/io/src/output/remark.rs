@@ -77,7 +77,11 @@ impl fmt::Display for Remark {
                 write!(f, "the run ended before its tables were written; {rows} rows come from {JOURNAL}")
             }
             Remark::JournalDamaged { bytes } => {
-                write!(f, "the last {bytes} bytes of {JOURNAL} are damaged or were not written to their end, and are left out")
+                write!(
+                    f,
+                    "the last {bytes} bytes of {JOURNAL} are left out: they begin with what is damaged or was not written to its end, and what \
+                     stands behind that is not trusted"
+                )
             }
             Remark::StillRunning => f.write_str("the run is still going on; this is what its journal has until now"),
             Remark::OtherCsv => write!(f, "{CSV} is not as the run wrote it; its numbers are shown as they are"),

@@ -107,7 +107,7 @@ impl Deployment {
         let period_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
         let hold = |period_s: f64| self.apply(setup, period_s).control.as_ref().map_or(Hold::IDEAL, Hold::of);
         let margin_s = SamplingMargin::longest_period_s(setup, period_s, hold);
-        let linearised_s = if SamplingMargin::is_of_all(setup) {
+        let linearised_s = if SamplingMargin::is_enough(&self.apply(setup, period_s)) {
             None
         } else {
             WholeLoop::longest_period_s(period_s, |period_s| self.apply(setup, period_s))

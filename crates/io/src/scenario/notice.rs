@@ -35,6 +35,8 @@ pub enum Notice {
         sigma: f64,
         /// A sample rate that would be enough, Hz; `None` where the torque comes too late for any.
         enough_hz: Option<f64>,
+        /// The gain that is to be smaller.
+        too_large: &'static str,
     },
     /// A log has packets of edges that the network does not have.
     UnusedInLog {
@@ -231,6 +233,7 @@ impl Notice {
             sigma: *sigma,
             // A little more, since it is shown rounded.
             enough_hz: recommended_s.map(|period_s| 1.05 / period_s),
+            too_large: margin.too_large(),
         })
     }
 }
@@ -239,15 +242,17 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
-            Notice::CoarseSampling { agent, sigma, enough_hz } => {
+            Notice::CoarseSampling { agent, sigma, enough_hz, too_large } => {
                 write!(
                     f,
                     "`sample_hz` is low for the gains: the sampling margin σ is {sigma:.3} for {agent}; at most \
                      {RECOMMENDED_MARGIN} is recommended, and from 1 on it is not shown to be stable; "
                 )?;
                 match enough_hz {
-                    Some(enough_hz) => write!(f, "sample at {} Hz, or let K be smaller", about(*enough_hz)),
-                    None => f.write_str("the torque comes too late for any rate; let K be smaller"),
+                    Some(enough_hz) => write!(f, "sample at {} Hz, or let {too_large} be smaller", about(*enough_hz)),
+                    None => {
+                        write!(f, "with these gains the torque comes too late for any rate; let {too_large} be smaller")
+                    }
                 }
             }
             Notice::UnusedDwell { line } => write!(f, "`dwell_s` on line {line} is not used"),

@@ -40,6 +40,13 @@ pub struct Solid {
     pub faces: String,
 }
 
+impl Solid {
+    /// Bytes of its numbers as they stand on a page.
+    pub fn bytes(&self) -> usize {
+        self.points.len() + self.faces.len()
+    }
+}
+
 /// A solid on a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Part {

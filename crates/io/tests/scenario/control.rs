@@ -158,5 +158,8 @@ fn sampling_that_is_too_slow_for_the_gain_is_said() {
     assert!(coarse[0].starts_with("`sample_hz` is low for the gains: the sampling margin σ is "), "{coarse:?}");
     assert!(coarse[0].ends_with(" Hz, or let K be smaller"), "{coarse:?}");
     let late = notices("sample_hz = 20\ncomputation_delay_s = 0.049");
-    assert!(late[0].ends_with("; the torque comes too late for any rate; let K be smaller"), "{late:?}");
+    assert!(
+        late[0].ends_with("; with these gains the torque comes too late for any rate; let K be smaller"),
+        "{late:?}"
+    );
 }

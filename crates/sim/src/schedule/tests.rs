@@ -33,7 +33,7 @@ fn longest_run_s(schedule: &Schedule, agents: usize, end_s: f64) -> f64 {
             let union: Vec<Edge> =
                 segments[first..=last].iter().flat_map(|s| schedule.graph(s.graph)).copied().collect();
             let rooted = matches!(spanning_tree(agents, &union), SpanningTree::Rooted { .. });
-            rooted.then(|| segments[last].end_s - segments[first].start_s)
+            rooted.then(|| segments[last].end_s.min(end_s) - segments[first].start_s)
         })
     };
     // What the end cuts off was needed as well.
@@ -148,6 +148,31 @@ fn regress_a_tail_without_a_tree_is_held_against_a_log() {
     assert!(matches!(window(&every, 60.0), Window::Uniform { length_s: 10.0, for_all_time: false, .. }));
     assert!(matches!(window(&every, 75.0), Window::Uniform { length_s: 24.0, worst_start_s: 51.0, .. }));
     assert_eq!(window(&every, 120.0), once(69.0, 51.0));
+}
+
+/// What comes once in each half has not come back, and nothing that is drawn lasts beyond the run.
+#[test]
+fn regress_a_run_shows_what_comes_back_in_less_than_half_of_it_and_no_window_beyond_its_end() {
+    let graphs = || vec![phase(0.0, &[(0, 1)]).edges, phase(0.0, &[(1, 2)]).edges];
+    let window = |starts: &[f64], end_s: f64| {
+        let which = (0..starts.len()).map(|k| k % 2).collect();
+        Schedule::logged(graphs(), Logged { starts_s: starts.to_vec(), graphs: which, until_s: end_s }).window(3, end_s)
+    };
+    assert_eq!(window(&[0.0, 30.0], 60.0), Window::Once { wait_s: 30.0, start_s: 0.0 });
+    assert!(matches!(window(&[0.0, 10.0, 30.0, 50.0], 60.0), Window::Uniform { length_s: 40.0, .. }));
+    let mut cut = 0;
+    for seed in 0..200 {
+        match Schedule::random(graphs(), [15.0, 29.0], seed).window(3, 100.0) {
+            Window::Uniform { length_s, worst_start_s, .. } => {
+                assert!(worst_start_s + length_s <= 100.0, "{seed}: {length_s} {worst_start_s}");
+                cut += u32::from(worst_start_s + length_s == 100.0);
+            }
+            Window::Once { wait_s, start_s } => assert!(wait_s >= 50.0 && start_s + wait_s <= 100.0, "{seed}"),
+            Window::Missing { start_s, .. } => assert!(start_s >= 0.0),
+            Window::EveryGraph => panic!("no graph has a tree by itself"),
+        }
+    }
+    assert!(cut > 0);
 }
 
 #[test]

@@ -24,8 +24,8 @@ pub enum Window {
     },
     /// Every graph that can be drawn has a directed spanning tree by itself: any window will do, whatever the draws.
     EveryGraph,
-    /// There are runs of phases with a directed spanning tree, but the horizon is not twice as long as one waits for the phase that completes
-    /// one, or waits in vain up to its end: nothing is seen to come back.
+    /// There are runs of phases with a directed spanning tree, but the horizon is not more than twice as long as one waits for the phase that
+    /// completes one, or waits in vain up to its end: nothing is seen to come back.
     Once {
         /// How long one waits, s.
         wait_s: f64,
@@ -128,8 +128,12 @@ impl Schedule {
             if last.start_s - start_s > wait_s {
                 (wait_s, waits_from_s) = (last.start_s - start_s, start_s);
             }
-            // A last graph that stays for ever can be cut into windows as short as one likes.
-            let end = if last.end_s.is_infinite() { last.start_s } else { last.end_s };
+            // A last graph that stays for ever can be cut into windows as short as one likes; what is drawn for after the horizon is not there.
+            let end = match last.end_s {
+                end if end.is_infinite() => last.start_s,
+                end if for_all_time => end,
+                end => end.min(end_s),
+            };
             if end - start_s > length_s
                 && let SpanningTree::Rooted { roots } = union.spanning_tree()
             {
@@ -140,7 +144,7 @@ impl Schedule {
         if let Some(cut) = cut_at_last() {
             return cut;
         }
-        if !for_all_time && 2.0 * wait_s > end_s {
+        if !for_all_time && wait_s > 0.0 && 2.0 * wait_s >= end_s {
             return Window::Once { wait_s, start_s: waits_from_s };
         }
         // No window is shorter than what the horizon cuts off.

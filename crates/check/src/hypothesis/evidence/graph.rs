@@ -29,7 +29,7 @@ pub enum GraphEvidence {
         /// How many there are.
         graphs: usize,
     },
-    /// Unions have one, but the run, beyond which nothing is known, is not twice as long as one waits for it.
+    /// Unions have one, but the run, beyond which nothing is known, is not more than twice as long as one waits for it.
     Once {
         /// How long one waits, s, or until the end.
         wait_s: f64,

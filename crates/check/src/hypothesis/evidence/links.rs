@@ -74,6 +74,8 @@ pub enum LinkEvidence {
         low: f64,
         /// None is larger.
         high: f64,
+        /// Whether that matters for how far agents stay behind alone.
+        lags: bool,
     },
     /// A nonlinear coupling out of the list, all of which are odd, continuous and in the sector.
     Coupling {

@@ -32,7 +32,7 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
             }
         }
         GraphEvidence::Once { wait_s, start_s, end_s } => format!(
-            "from t = {} s on no agent reaches all others for {} s, more than half of the run, which ends at {} s: nothing is seen to come back",
+            "from t = {} s on no agent reaches all others for {} s, half of the run or more, which ends at {} s: nothing is seen to come back",
             seconds(*start_s),
             seconds(*wait_s),
             seconds(*end_s)

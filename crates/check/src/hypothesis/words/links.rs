@@ -51,7 +51,12 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
         }
         LinkEvidence::RefutedWeight { fault, witness } => refuted_weight(*fault, *witness),
         LinkEvidence::ConstantWeights => "no weight changes with time".into(),
-        LinkEvidence::VaryingWeights { low, high } => format!(
+        LinkEvidence::VaryingWeights { low, high, lags: true } => format!(
+            "a weight follows a formula, within {} and {}: how far agents stay behind over late links is known of constant weights only",
+            lower_bound(*low),
+            bound(*high)
+        ),
+        LinkEvidence::VaryingWeights { low, high, lags: false } => format!(
             "a weight follows a formula, within {} and {}: where it changes, the design, which is realised by its integral, leaves −ẇ(dq_i − dq_j) \
              over, so that what is integrated is not the law that the proof speaks of",
             lower_bound(*low),

@@ -38,7 +38,7 @@ mod network;
 mod place;
 mod trial;
 
-use forwardstep_sim::{Periods, Setup};
+use forwardstep_sim::{AgentSetup, Periods, Setup};
 
 use self::linear::Linear;
 use self::network::degree;
@@ -96,6 +96,8 @@ pub struct WholeLoop {
     pub agents: usize,
     /// All there are.
     pub of: usize,
+    /// Whether any adapts.
+    pub adapts: bool,
     /// The end of the run, s.
     end_s: f64,
 }
@@ -139,7 +141,19 @@ impl WholeLoop {
         let astray = astray.and_then(|place| place.look(&looked));
         let trial = if is_tried { Trial::of(setup) } else { None }.unwrap_or_default();
         let changes = looked.iter().any(|agent| network::changes(setup, *agent));
-        Some(WholeLoop { period_s, start: start?, led, astray, trial, changes, agents: looked.len(), of, end_s })
+        let adapts = setup.agents.iter().any(AgentSetup::estimates);
+        Some(WholeLoop {
+            period_s,
+            start: start?,
+            led,
+            astray,
+            trial,
+            changes,
+            agents: looked.len(),
+            of,
+            adapts,
+            end_s,
+        })
     }
 
     /// The period near `near_s` from which on a mode of `setup` grows in the long run, s, where `sampled` samples it with a period: the end of the

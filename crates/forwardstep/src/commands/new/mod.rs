@@ -186,7 +186,14 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     if rubs {
         chosen = chosen.rubbing().ok_or_else(|| refused(NewError::NoJoints(given.clone())))?;
     }
+    let without_friction = chosen.leaves_friction_out();
     let mut template = Template::new(chosen);
+    if without_friction {
+        let left_out =
+            "The URDF states friction of its joints, which is left out; `forwardstep new --dry-friction` simulates it.";
+        remark(left_out);
+        template.remarks.push(left_out.to_owned());
+    }
     template.title = options.name.clone().or_else(stem).unwrap_or(template.title);
     template.agents = asker.ask(options.agents, "number of agents", template.agents, count_of_agents);
     let (needs, exchange, follows) = match template.robot.task {

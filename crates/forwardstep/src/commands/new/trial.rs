@@ -34,13 +34,15 @@ const SHORT_S: f64 = 1e-4;
 /// The robot itself makes the closed loop stiff where its damping has this much of the fastest rate, which is known to a factor of two.
 const OWN: f64 = 0.3;
 
-/// The gains that are tried, one after the other: the usual ones, faster learning, learning from nearby, slower gains, no learning at all.
-const TUNINGS: [Tuning; 6] = [
+/// The gains that are tried, one after the other: the usual ones, faster learning, learning from nearby, slower gains, no learning at all, slower
+/// without learning, which takes the least torque.
+const TUNINGS: [Tuning; 7] = [
     Tuning::USUAL,
     Tuning { adaptation_per_s: 20.0, ..Tuning::USUAL },
     Tuning { adaptation_per_s: 20.0, known: 0.8, ..Tuning::USUAL },
     Tuning { damping_per_s: 4.0, adaptation_per_s: 4.0, known: 0.8 },
     Tuning { known: 1.0, ..Tuning::USUAL },
+    Tuning { damping_per_s: 4.0, adaptation_per_s: 4.0, known: 1.0 },
     Tuning { damping_per_s: 1.0, adaptation_per_s: 1.0, known: 1.0 },
 ];
 
@@ -56,7 +58,7 @@ pub(super) struct Tried {
 /// How one run went.
 enum Went {
     /// The gap vanished; a joint left its limits on the way, or took more torque than it has.
-    Well { goal: f64, gap: String, leaves: Option<String>, exceeds: Option<String> },
+    Well { goal: f64, gap: String, leaves: Option<String>, exceeds: Option<Exceeds> },
     /// The gap falls, and would have vanished by then, s.
     TooShort { needs_s: f64, gap: String },
     /// Anything else, in words.
@@ -65,13 +67,28 @@ enum Went {
     Hopeless(String),
 }
 
+/// A torque beyond a limit that is not enforced.
+struct Exceeds {
+    /// By how many times.
+    times: f64,
+    /// In words, without a beginning.
+    words: String,
+}
+
+/// Gains that do what they should, but for limits that are reported only: better ones leave no position limits, and then take less torque.
+struct SecondBest {
+    leaves: bool,
+    times: f64,
+    template: Template,
+}
+
 /// Tries a scenario with several gains and horizons. `read` reads its text.
 pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scenario, Status>) -> Result<Tried, Status> {
     let adapts = template.robot.law == LawTemplate::Adaptive;
     let tunings = if adapts { &TUNINGS[..] } else { &TUNINGS[..1] };
     let patience: &[f64] = if adapts { &LONGEST_S } else { &LONGEST_S[1..] };
     let tries = patience.iter().flat_map(|longest_s| tunings.iter().map(move |tuning| (*longest_s, *tuning)));
-    let (mut effort, mut says, mut second_best) = (EFFORT[1], Said::default(), None);
+    let (mut effort, mut says, mut second_best) = (EFFORT[1], Said::default(), None::<SecondBest>);
     for (longest_s, tuning) in tries {
         if effort == 0 || (longest_s > LONGEST_S[0] && second_best.is_some()) {
             break;
@@ -83,20 +100,23 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
                 Went::Well { goal, gap, leaves, exceeds } => {
                     candidate.goal = Some(goal);
                     let leaves_limits = leaves.iter().map(|axis| format!("{axis} leaves its limits on the way"));
-                    let buts: Vec<String> = leaves_limits.chain(exceeds.clone()).collect();
+                    let buts: Vec<String> = leaves_limits.chain(exceeds.iter().map(|it| it.words.clone())).collect();
                     let but = if buts.is_empty() { String::new() } else { format!(", but {}", buts.join(", and ")) };
                     says.push(format!("{described}{gap} after {} s{but}", candidate.end_s));
                     // What is reported only, and not kept to, shows nothing of a robot that has no more.
-                    candidate.remarks.extend(exceeds.map(|exceeds| {
+                    candidate.remarks.extend(exceeds.as_ref().map(|Exceeds { words, .. }| {
                         format!(
-                            "In the trial {exceeds}: effort limits are not enforced in it. With `enforce_limits = true` in \
+                            "In the trial {words}: effort limits are not enforced in it. With `enforce_limits = true` in \
                              [[agents]] the run keeps to them; slower gains or a nearer start need less."
                         )
                     }));
-                    if leaves.is_none() {
+                    let (leaves, times) = (leaves.is_some(), exceeds.map_or(0.0, |it| it.times));
+                    if !leaves && times == 0.0 {
                         return Ok(Tried { template: candidate, works: true });
                     }
-                    second_best.get_or_insert(candidate);
+                    if second_best.as_ref().is_none_or(|best| (leaves, times) < (best.leaves, best.times)) {
+                        second_best = Some(SecondBest { leaves, times, template: candidate });
+                    }
                 }
                 Went::TooShort { needs_s, .. } if needs_s <= longest_s && needs_s > candidate.end_s => {
                     candidate.end_s = needs_s;
@@ -113,8 +133,8 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
         }
     }
     Ok(match second_best {
-        // Limits of positions are reported, not enforced: the robots agree all the same.
-        Some(template) => Tried { template, works: true },
+        // Limits are reported, not enforced: the robots agree all the same.
+        Some(SecondBest { template, .. }) => Tried { template, works: true },
         None => {
             let mut template = template;
             let usual = says.sentences.first().cloned().unwrap_or_default();
@@ -215,13 +235,14 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
         let times = |limit: &&LimitReached| (limit.worst / limit.limit).abs();
         let exceeds = exceeds.max_by(|a, b| times(a).total_cmp(&times(b))).map(|limit| {
             let unit = names::unit(setup, limit.agent, Signal::Torque, limit.axis);
-            format!(
+            let words = format!(
                 "{} of {} takes {} {unit} where its effort limit is {} {unit}",
                 names::axis_name(setup, limit.agent, limit.axis),
                 names::agent_name(setup, limit.agent),
                 about(limit.worst.abs()),
                 about(limit.limit.abs()),
-            )
+            );
+            Exceeds { times: times(&limit), words }
         });
         return Ok(Went::Well { goal, gap, leaves, exceeds });
     }

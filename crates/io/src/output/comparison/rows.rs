@@ -1,5 +1,7 @@
 //! The rows of the table.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use forwardstep_check::Answer;
 use forwardstep_check::smoothness::LargestJump;
 use forwardstep_sim::recording::{Ending, Signal};
@@ -15,8 +17,12 @@ use super::super::table::Table;
 use super::{Compared, ComparedCell as Cell, ComparedRow as Row, RowGroup, words};
 
 /// Why a run has no prediction.
-const UNPREDICTED: &str =
-    "it was not predicted: agents follow targets or a leader, or the run was made without `--predict`";
+const NOT_AGREED_UPON: &str = "nothing is agreed upon: agents follow targets or a leader";
+const UNPREDICTED: &str = "it was not predicted; `forwardstep run --predict` predicts";
+/// Where more keys of scenarios differ they are others, and no variants.
+const MOST_VARIED: usize = 12;
+/// What rows of their own show, or what is no number.
+const SHOWN_ELSEWHERE: [&str; 4] = ["format", "title", "law", "reference"];
 
 /// A run with what its rows are made from.
 pub(super) struct Subject<'a> {
@@ -38,7 +44,8 @@ impl<'a> Subject<'a> {
     }
 
     fn prediction(&self) -> Result<&'a Predictions, Cell> {
-        self.run.record.prediction.as_ref().ok_or_else(|| Cell::none(UNPREDICTED))
+        let because = if Gap::of(self.setup()) == Gap::Error { NOT_AGREED_UPON } else { UNPREDICTED };
+        self.run.record.prediction.as_ref().ok_or_else(|| Cell::none(because))
     }
 
     fn course(&self) -> Result<&'a CourseFound, Cell> {
@@ -69,7 +76,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
     let Some(first) = subjects.first() else { return Vec::new() };
     let alike = |same: fn(&Subject<'_>, &Subject<'_>) -> bool| move |k: usize| same(first, &subjects[k]);
     use RowGroup::{Observed, Predicted, Promised, Simulated};
-    vec![
+    let mut rows = vec![
         row(Simulated, "robots", "robots", |s| Ok(Cell::words(words::robots(&s.scenario, s.setup()))))
             .unless(alike(same_robots)),
         row(Simulated, "law", "law", |s| Ok(Cell::words(words::laws(&s.scenario, s.setup())))),
@@ -83,6 +90,9 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
         row(Simulated, "start", "gap at the start", start).unless(alike(same_start)),
         row(Simulated, "control", "control", |s| Ok(Cell::words(words::control(s.setup())))),
         row(Simulated, "horizon_s", "horizon", |s| Ok(Cell::number(s.setup().time.end_s, "s"))),
+    ];
+    rows.extend(varied(subjects));
+    rows.extend([
         row(Promised, "theorem", "theorem", |s| Ok(Cell::words(s.run.record.verdicts.theorem.to_string()))),
         row(Promised, "verdict", "verdict", verdict),
         row(Promised, "guaranteed_settled_s", "1 % left by", |s| {
@@ -148,7 +158,30 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
         row(Observed, "rms_torque", "effort, rms τ", rms_torque),
         row(Observed, "work_j", "effort, ∫ |τᵀq̇|", work),
         row(Observed, "messages", "messages", messages),
-    ]
+    ]);
+    rows
+}
+
+/// The keys in which scenarios differ, where these are few: what a sweep varies.
+fn varied(subjects: &[Subject<'_>]) -> Vec<Row> {
+    let stated: Vec<BTreeMap<String, String>> = subjects.iter().map(|s| words::stated(&s.scenario)).collect();
+    let elsewhere = |path: &str| SHOWN_ELSEWHERE.contains(&path.split('.').next().unwrap_or_default());
+    let paths: BTreeSet<&String> = stated.iter().flat_map(BTreeMap::keys).filter(|path| !elsewhere(path)).collect();
+    let differs = |path: &&String| stated.windows(2).any(|pair| pair[0].get(*path) != pair[1].get(*path));
+    let paths: Vec<&String> = paths.into_iter().filter(differs).collect();
+    if paths.len() > MOST_VARIED {
+        return Vec::new();
+    }
+    let cell = |stated: &BTreeMap<String, String>, path: &String| match stated.get(path) {
+        Some(value) => Cell::words(value),
+        None => Cell::none("the scenario does not state it"),
+    };
+    let row = |path: &String| {
+        let cells = stated.iter().map(|stated| cell(stated, path)).collect();
+        // Long values may differ behind what is shown.
+        Row { same: false, ..Row::of(RowGroup::Simulated, &format!("scenario.{path}"), path, cells) }
+    };
+    paths.into_iter().map(row).collect()
 }
 
 fn same_robots(a: &Subject<'_>, b: &Subject<'_>) -> bool {
@@ -225,7 +258,7 @@ fn final_gap(s: &Subject<'_>) -> Result<Cell, Cell> {
 
 fn value(s: &Subject<'_>) -> Result<Cell, Cell> {
     if Gap::of(s.setup()) == Gap::Error {
-        return Err(Cell::none("nothing is agreed upon: agents follow targets or a leader"));
+        return Err(Cell::none(NOT_AGREED_UPON));
     }
     let means = s.metrics.final_means.as_ref().ok_or_else(|| Cell::none("agents cannot be compared"))?;
     if !s.metrics.disagreement.is_agreement() {

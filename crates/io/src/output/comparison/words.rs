@@ -1,5 +1,7 @@
 //! What was simulated, in the words of its scenario file: kinds and gains as their author wrote them.
 
+use std::collections::BTreeMap;
+
 use forwardstep_sim::Setup;
 use toml::{Table, Value};
 
@@ -71,6 +73,35 @@ fn written(value: &Value) -> String {
     let mut entries = Vec::new();
     flatten("", inner, &mut entries);
     if entries.is_empty() { kind.clone() } else { format!("{kind}: {}", entries.join(", ")) }
+}
+
+/// Letters of a value that are shown.
+const MOST_LETTERS: usize = 80;
+
+/// What a scenario states, by the paths of its keys; agents by name.
+pub(super) fn stated(scenario: &Table) -> BTreeMap<String, String> {
+    let mut all = BTreeMap::new();
+    scenario.iter().for_each(|(key, value)| state(key.clone(), value, &mut all));
+    all
+}
+
+fn state(path: String, value: &Value, into: &mut BTreeMap<String, String>) {
+    match value {
+        Value::Table(table) if !table.is_empty() => {
+            table.iter().for_each(|(key, value)| state(format!("{path}.{key}"), value, into));
+        }
+        Value::Array(entries) if entries.iter().any(Value::is_table) => {
+            for (k, entry) in entries.iter().enumerate() {
+                let name = entry.get("name").and_then(Value::as_str);
+                state(format!("{path}.{}", name.map_or_else(|| (k + 1).to_string(), str::to_owned)), entry, into);
+            }
+        }
+        value => {
+            let text = value.to_string();
+            let cut: String = text.chars().take(MOST_LETTERS).collect();
+            into.insert(path, if cut.len() < text.len() { format!("{cut}…") } else { text });
+        }
+    }
 }
 
 fn flatten(path: &str, value: &Value, into: &mut Vec<String>) {

@@ -7,7 +7,7 @@ use forwardstep_sim::trajectory::Path;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
-use super::super::metrics::{DisagreementSeries, balance_residuals};
+use super::super::metrics::{DisagreementSeries, Gap, balance_residuals};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -16,7 +16,9 @@ use super::cascade::CascadeIndex;
 use super::families::{Family, FamilyIndex};
 use super::network::{self, Gantt};
 use super::scene::Scene;
+use super::single::{Origins, Singles};
 use super::text;
+use crate::shapes::Solid;
 
 /// Points of a signal on the page, as far as space allows.
 const MOST_POINTS: usize = 2000;
@@ -121,6 +123,16 @@ pub(super) struct Grids {
     pub(super) main_series: usize,
     pub(super) estimate_series: usize,
     pub(super) delay_series: usize,
+    /// Of delays there are none.
+    pub(super) origins: GridOrigins,
+}
+
+/// What is to be added to some series of each grid.
+#[derive(Serialize, Default)]
+pub(super) struct GridOrigins {
+    pub(super) main: Origins,
+    pub(super) estimates: Origins,
+    pub(super) scene: Origins,
 }
 
 /// Indices of series by agent and axis.
@@ -140,6 +152,8 @@ struct Signals {
 
 #[derive(Serialize)]
 struct DisagreementIndex {
+    /// `disagreement` or `error`.
+    word: &'static str,
     unit: String,
     overall: usize,
     per_axis: Vec<usize>,
@@ -161,19 +175,16 @@ pub(super) struct DelayIndex {
 pub(super) struct Series<'a> {
     pub(super) grid: Grid,
     rows_t_s: &'a [f64],
-    pub(super) values: Vec<f32>,
-    pub(super) count: usize,
+    pub(super) numbers: Singles,
 }
 
 impl<'a> Series<'a> {
     pub(super) fn new(grid: Grid, rows_t_s: &'a [f64]) -> Self {
-        Series { grid, rows_t_s, values: Vec::new(), count: 0 }
+        Series { grid, rows_t_s, numbers: Singles::default() }
     }
 
     pub(super) fn add(&mut self, values: &[f64], may_jump: bool) -> usize {
-        self.values.extend(self.grid.sample(self.rows_t_s, values, may_jump));
-        self.count += 1;
-        self.count - 1
+        self.numbers.add(&self.grid.sample(self.rows_t_s, values, may_jump))
     }
 }
 
@@ -183,7 +194,10 @@ impl Payload {
         let break_points = timeline.break_points();
         let columns = &record.outcome.recording.columns;
         let signals = columns.iter().filter(|c| c.signal != Signal::Estimate).count() + table.agents() + 1;
-        let budget = (ROOM / (signals + table.largest_dof())).clamp(FEWEST_POINTS, MOST_POINTS);
+        // Shapes take from the same room: four bytes in base64 make five and a third.
+        let shapes = record.shapes.map_or(0, |shapes| shapes.solids.iter().map(Solid::bytes).sum());
+        let room = ROOM.saturating_sub(shapes * 3 / 16);
+        let budget = (room / (signals + table.largest_dof())).clamp(FEWEST_POINTS, MOST_POINTS);
         let mut main = Series::new(Grid::new(table.t_s, &break_points, budget), table.t_s);
         if main.grid.decimated {
             notes.push(format!(
@@ -223,6 +237,7 @@ impl Payload {
             index.balance_residual.push(error.map(|error| main.add(&error, false)));
         }
         let disagreement = DisagreementSeries::of_table(table).ok().map(|series| DisagreementIndex {
+            word: Gap::of(record.setup).word(),
             unit: names::gap_unit(record.setup),
             overall: main.add(&series.overall, false),
             names: (0..series.per_axis.len()).map(|axis| names::gap_words(record.setup, axis)).collect(),
@@ -272,9 +287,14 @@ impl Payload {
                 estimates: estimates.grid.t_s.len(),
                 delays: delay_t_s.len(),
                 scene: space.t_s.len(),
-                main_series: main.count,
-                estimate_series: estimates.count,
+                main_series: main.numbers.count,
+                estimate_series: estimates.numbers.count,
                 delay_series: shown_delays.len(),
+                origins: GridOrigins {
+                    main: main.numbers.origins,
+                    estimates: estimates.numbers.origins,
+                    scene: space.numbers.origins,
+                },
             },
             signals: index,
             families,
@@ -291,7 +311,8 @@ impl Payload {
         };
         let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));
-        let series = [&main.values, &estimates.values].into_iter().chain(delays).chain([&space.values]);
+        let series =
+            [&main.numbers.values, &estimates.numbers.values].into_iter().chain(delays).chain([&space.numbers.values]);
         let cascade = index.cascade.as_ref().map(CascadeIndex::is_guaranteed);
         Payload { json: harmless_json(&index), block: block(times, series), solid, cascade, notes }
     }
@@ -328,7 +349,7 @@ fn agents<'a>(
     let mut agents_left_out = 0;
     let agents = (0..table.agents())
         .map(|agent| {
-            let fits = series.count + estimated(agent) <= room;
+            let fits = series.numbers.count + estimated(agent) <= room;
             agents_left_out += usize::from(!fits);
             let mut parameter = |k: usize| ParameterIndex {
                 name: names::parameter_name(setup, agent, k),

@@ -16,6 +16,7 @@ mod scene;
 pub(crate) mod sections;
 mod side_by_side;
 mod side_data;
+mod single;
 mod stage;
 pub(crate) mod text;
 

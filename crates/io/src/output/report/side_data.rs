@@ -10,9 +10,10 @@ use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::timeline::{self, Timeline};
-use super::data::{DelayIndex, Grids, Series, block};
+use super::data::{DelayIndex, GridOrigins, Grids, Series, block};
 use super::network::{self, Gantt};
 use super::scene::Scene;
+use super::single::Origins;
 use super::text;
 
 /// Points of each line.
@@ -109,9 +110,14 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
             estimates: 0,
             delays: delay_t_s.len(),
             scene: space.t_s.len(),
-            main_series: main.count,
+            main_series: main.numbers.count,
             estimate_series: 0,
             delay_series: shown.len(),
+            origins: GridOrigins {
+                main: main.numbers.origins,
+                estimates: Origins::default(),
+                scene: space.numbers.origins,
+            },
         },
         gantt: Gantt::of(setup, &timeline, &mut Vec::new()),
         delays: shown
@@ -124,7 +130,7 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
     };
     let delays = shown.iter().filter_map(|(k, _)| delay_values.get(*k));
     let times = [&main.grid.t_s, &Vec::new(), &delay_t_s, &space.t_s];
-    let numbers = block(times, [&main.values].into_iter().chain(delays).chain([&space.values]));
+    let numbers = block(times, [&main.numbers.values].into_iter().chain(delays).chain([&space.numbers.values]));
     (index, numbers)
 }
 
@@ -154,7 +160,12 @@ fn quantities(record: &RunRecord<'_>, table: &Table<'_>, main: &mut Series<'_>) 
                 lines: vec![Line { series: main.add(values, false), style: Style::Run }],
             }));
         }
-        add("gap", Gap::of(setup).name(), true, entries);
+        // What vanishes of one run is not what vanishes of another: each has a card.
+        let id = match Gap::of(setup) {
+            Gap::Disagreement => "gap",
+            Gap::Error => "gap-to-targets",
+        };
+        add(id, Gap::of(setup).name(), true, entries);
     }
     add("position", "Positions: mean, least and greatest", false, positions(table, main));
     for (id, title, signal, log) in [

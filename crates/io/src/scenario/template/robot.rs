@@ -108,6 +108,11 @@ impl RobotTemplate {
         }
     }
 
+    /// Whether its file states friction, which is left out.
+    pub fn leaves_friction_out(&self) -> bool {
+        self.line.ends_with(IGNORED)
+    }
+
     /// The same robot with dry friction, as its file states it or 0.5 N m; `None` for one that has no joints to rub.
     pub fn rubbing(mut self) -> Option<Self> {
         let friction = self.dry_friction?;

@@ -151,7 +151,8 @@ fn links(evidence: &LinkEvidence) -> Option<String> {
                 "ends of the formula w, such as min(max(w, c), d) with constants 0 < c < d, and a bounded slope".into()
             }
         },
-        LinkEvidence::VaryingWeights { .. } => {
+        LinkEvidence::VaryingWeights { lags: true, .. } => "weights that are constant".into(),
+        LinkEvidence::VaryingWeights { lags: false, .. } => {
             "weights that are constant, or `design = \"composite\"`, whose torques are differentiable too".into()
         }
         LinkEvidence::Prompt | LinkEvidence::Coupling { .. } | LinkEvidence::ConstantWeights => return None,

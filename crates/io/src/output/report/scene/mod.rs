@@ -21,6 +21,7 @@ use super::super::packets;
 use super::super::table::Table;
 use super::super::timeline::Timeline;
 use super::network;
+use super::single::Singles;
 use crate::shapes::{Shapes, Solid};
 use kinematics::{ArmScene, uniform_lengths};
 
@@ -124,8 +125,7 @@ impl Flights {
 pub(super) struct Rows {
     pub(super) t_s: Vec<f64>,
     picks: Vec<usize>,
-    pub(super) values: Vec<f32>,
-    pub(super) count: usize,
+    pub(super) numbers: Singles,
 }
 
 impl Rows {
@@ -136,13 +136,12 @@ impl Rows {
         let pick = |k: usize| if shown > 1 { k * (rows - 1) / (shown - 1) } else { 0 };
         let picks: Vec<usize> = (0..shown).map(pick).collect();
         let t_s = picks.iter().filter_map(|row| rows_t_s.get(*row).copied()).collect();
-        Rows { t_s, picks, values: Vec::new(), count: 0 }
+        Rows { t_s, picks, numbers: Singles::default() }
     }
 
     fn add(&mut self, value: impl Fn(usize, usize) -> f64) -> usize {
-        self.values.extend(self.picks.iter().enumerate().map(|(k, row)| value(k, *row) as f32));
-        self.count += 1;
-        self.count - 1
+        let values: Vec<f64> = self.picks.iter().enumerate().map(|(k, row)| value(k, *row)).collect();
+        self.numbers.add(&values)
     }
 
     fn column(&mut self, values: &[f64]) -> usize {
