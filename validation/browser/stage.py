@@ -115,6 +115,42 @@ def tips(browser, name):
     print(f"ok     {name}: tips within {worst:.1e} m of the library's")
 
 
+def far_away(browser, folder):
+    """What moves by metres millions of metres away is drawn where the table says."""
+    scenario = known.masses(folder, "far-away", RING, every=0.05)
+    scenario.write_text(scenario.read_text().replace("within = [-1.0, 1.0]", "within = [4e6, 4.000002e6]"))
+    page = folder.run("far-away", scenario, "--csv")
+    browser.open(page)
+    rows = list(csv.DictReader(page.with_name("trajectory.csv").open()))
+    times, worst = value(browser, "s.times()"), 0.0
+    for k, t in enumerate(times):
+        row = rows[round(t / 0.05)]
+        for point, tip in enumerate(value(browser, f"s.tips(s.times()[{k}])")):
+            worst = max(worst, *(abs(tip[axis] - float(row[f"point-{point + 1}.q.{axis + 1}"])) for axis in range(2)))
+    expect(len(times) > 40 and worst < 1e-5, f"far away: drawn {worst} m from where they are, at {len(times)} rows")
+    quiet(browser, "far away", 1400)
+
+
+def many_names(browser, folder):
+    """Long names stay apart and within the page, and names that have no room are counted."""
+    texts = "return [...document.querySelectorAll('#graph-picture text')].map((e) => e.textContent)"
+    for stem, width in [("a-very-long-name-that-has-sixty-characters-and-never-breaks", 1400), ("averylongnamethathassixtycharactersandneverbreaks", 390)]:
+        scenario = known.masses(folder, f"{stem[:8]}-{width}", RING, count=6)
+        scenario.write_text(scenario.read_text().replace('"point"', f'"{stem}"'))
+        page = folder.run(f"{stem[:8]}-{width}", scenario)
+        browser.screen(width, 900, touch=width == 390)
+        browser.open(page)
+        drawn = browser.run(texts)
+        expect(len(drawn) > 3 and len(set(drawn)) == len(drawn), f"{stem}: nodes are called {drawn}")
+        quiet(browser, stem, width)
+    browser.screen(1400, 900)
+    for count, told in [(25, False), (60, True)]:
+        browser.open(folder.run(f"count-{count}", known.masses(folder, f"count-{count}", RING, count=count)))
+        settled(browser, 0.0)
+        expect("no room for names" in value(browser, "document.querySelector('.where').textContent"), f"{count} points: none has a name, and nothing says so")
+        expect(("Names have no room" in known.words(browser)) == told, f"{count} points: {known.words(browser)}")
+
+
 def arm_with_shapes(folder):
     """An arm with a ball as its tool and a mesh as its base."""
     arm = pathlib.Path(__file__).resolve().parents[2] / "crates" / "io" / "robots" / "ur5e.urdf"
@@ -139,6 +175,8 @@ def check(browser, folder):
         browser.open(page, query)
         shapes(browser, f"shaped{query}")
         quiet(browser, f"shaped{query}", 1400)
+    far_away(browser, folder)
+    many_names(browser, folder)
     known.all_of(browser, folder)
     layout.all_of(browser, folder)
     hands.all_of(browser, folder)

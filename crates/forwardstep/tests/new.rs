@@ -279,6 +279,30 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
     forwardstep(&folder, &["new", "untried.toml", "--robot", "light.urdf", "--agents", "2", "--untried"]).success();
 }
 
+/// What cannot be written, or could not be named in any other command, is refused before gains are tried.
+#[cfg(unix)]
+#[test]
+fn regress_where_nothing_can_be_written_is_said_before_gains_are_tried() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let folder = folder();
+    let new = |file: &OsStr| {
+        let mut command = assert_cmd::Command::cargo_bin("forwardstep").unwrap();
+        stderr(&command.current_dir(&folder).arg("new").arg(file).args(["--agents", "2"]).assert().code(2))
+    };
+    fs::write(folder.path().join("file"), "").unwrap();
+    for (file, said) in [
+        (OsStr::from_bytes(b"f\xff.toml"), "not UTF-8"),
+        (OsStr::new("file/own.toml"), "there is no folder `file`"),
+        (OsStr::new("none/own.toml"), "there is no folder `none`"),
+    ] {
+        let told = new(file);
+        assert!(told.contains(said) && !told.contains("tried"), "{told}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
 /// A pendulum of 1 kg, half a metre long.
 const PENDULUM: &str = r#"<robot name="pendulum"><link name="base"/><link name="rod"><inertial><origin xyz="0.5 0 0"/><mass value="1"/>
 <inertia ixx="1e-3" iyy="1e-3" izz="1e-3" ixy="0" ixz="0" iyz="0"/></inertial></link>

@@ -52,6 +52,7 @@ fn write(folder: &Path, change: impl FnOnce(&mut Recording)) -> Recording {
         goal: None,
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: Vec::new(),
         shapes: None,
     };

@@ -7,7 +7,8 @@ use std::path::Path;
 use forwardstep_io::SourceText;
 use forwardstep_io::output::summary::Summary;
 use forwardstep_io::output::{
-    FirstInjection, Injected, Options, Remark, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run,
+    FirstInjection, Injected, InjectedCourse, Options, Remark, RestoreError, RunFolder, RunRecord, SavedRun,
+    TableError, write_run,
 };
 use forwardstep_io::scenario::read_scenario;
 use forwardstep_sim::{
@@ -61,6 +62,20 @@ fn injected() -> Vec<Injected> {
     }]
 }
 
+/// The same over time; a number that was not finite is not known.
+fn injected_course() -> InjectedCourse {
+    let known = |values: [f64; 3]| values.into_iter().map(Some).collect();
+    InjectedCourse {
+        t_s: vec![0.0, 0.25, 0.5],
+        v: known([2.0, 1.5, 1.25]),
+        by: [
+            ("dissipated".to_owned(), known([0.0, -0.5, -0.8])),
+            ("held".to_owned(), vec![Some(0.0), None, Some(0.05)]),
+        ]
+        .into(),
+    }
+}
+
 /// Runs the carts, lets `change` have its way with the outcome, and writes their folder.
 fn write(folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)) -> Outcome {
     write_of(CARTS, folder, change)
@@ -84,6 +99,7 @@ fn write_of(text: &str, folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)
         goal: None,
         digital: None,
         injected: injected(),
+        injected_course: Some(injected_course()),
         notices: vec!["one".into()],
         shapes: None,
     };

@@ -51,6 +51,7 @@ fn run_into(folder: &RunFolder, scenario: &Path) -> Result<Vec<PathBuf>, OutputE
         goal: None,
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: Vec::new(),
         shapes: None,
     };

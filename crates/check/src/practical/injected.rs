@@ -28,15 +28,18 @@
 //! Where z reads positions itself, as under (3) and (aa6), their noise jumps with z and counts as held.
 
 mod account;
+mod course;
 mod state;
 mod tally;
 
 use forwardstep_core::agent::VelocityFilter;
 use forwardstep_sim::recording::{SampleTaken, Signal};
 use forwardstep_sim::system::Known;
-use forwardstep_sim::{Inside, Setup, VelocitySensor, Watch, recorded_columns};
+use forwardstep_sim::{Inside, Place, Setup, VelocitySensor, Watch, recorded_columns};
 
 use self::account::Account;
+pub use self::course::InjectionCourse;
+use self::course::Taken;
 use self::state::{Law, Places};
 use self::tally::Tally;
 use super::rates::Gains;
@@ -161,6 +164,10 @@ fn name_first(terms: &[f64; 8], largest: f64, pushes_end: bool, t_s: f64) -> Opt
 /// Looks at the agents of a run: at robots under (6)–(7) in a network from their rows, at all others through the balance of their own law.
 pub struct InjectionWatch<'a> {
     agents: Vec<Option<Looked<'a>>>,
+    /// `None` once an agent is no longer looked at, which was a part of all sums until then.
+    taken: Option<Taken>,
+    /// The end of the last step.
+    now_s: f64,
 }
 
 /// How an agent is looked at.
@@ -194,7 +201,8 @@ impl<'a> InjectionWatch<'a> {
             Account::new(law, filter, clock, pushes_end).map(|account| Looked::Robot(Box::new(account)))
         };
         let agents: Vec<_> = (0..setup.agents.len()).map(account).collect();
-        agents.iter().any(Option::is_some).then_some(InjectionWatch { agents })
+        let taken = Some(Taken::new(setup.time.end_s));
+        agents.iter().any(Option::is_some).then_some(InjectionWatch { agents, taken, now_s: 0.0 })
     }
 
     /// The balance of every agent that was looked at.
@@ -204,6 +212,11 @@ impl<'a> InjectionWatch<'a> {
             Looked::ByItself(tally) => tally.balance(agent),
         };
         self.agents.iter().enumerate().filter_map(balance).collect()
+    }
+
+    /// V of all of them together over time, and what changed it.
+    pub fn course(&self) -> InjectionCourse {
+        self.taken.as_ref().map_or_else(InjectionCourse::default, |taken| taken.until(self.now_s, &self.balances()))
     }
 }
 
@@ -215,6 +228,15 @@ impl Watch for InjectionWatch<'_> {
     }
 
     fn inside(&mut self, at: Inside<'_>) {
+        // The first agent begins a step when all have ended the one before.
+        let begins = at.place == Place::Start && at.t_s >= self.now_s;
+        if begins && self.taken.as_ref().is_some_and(|taken| taken.is_due(self.now_s)) {
+            let balances = self.balances();
+            self.taken.iter_mut().for_each(|taken| taken.point(self.now_s, &balances));
+        }
+        if at.place == Place::End {
+            self.now_s = at.t_s;
+        }
         let Some(slot) = self.agents.get_mut(at.agent) else { return };
         // Better nothing than a sum that leaves something out.
         let looked = match slot {
@@ -224,6 +246,7 @@ impl Watch for InjectionWatch<'_> {
         };
         if looked.is_none() {
             *slot = None;
+            self.taken = None;
         }
     }
 }

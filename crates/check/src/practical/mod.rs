@@ -42,7 +42,7 @@ pub use agreement::{AgreementBound, AxisBound};
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
 pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::Hold;
-pub use injected::{Injection, InjectionBalance, InjectionWatch, NAMED_SHARE};
+pub use injected::{Injection, InjectionBalance, InjectionCourse, InjectionWatch, NAMED_SHARE};
 pub use loads::StaticLoad;
 pub use looped::{LoopAt, LoopRate, Trial, WholeLoop};
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};

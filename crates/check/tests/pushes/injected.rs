@@ -53,7 +53,26 @@ fn with(mut setup: Setup, change: impl FnOnce(&mut Control)) -> Setup {
 fn watched(setup: &Setup) -> (Outcome, Vec<InjectionBalance>) {
     let mut watch = InjectionWatch::of(setup).unwrap();
     let outcome = simulate_watched(setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    course_adds_up(&watch);
     (outcome, watch.balances())
+}
+
+/// At every time what was put in until then is the change of V, and the end is that of the balances.
+pub(super) fn course_adds_up(watch: &InjectionWatch<'_>) {
+    let (course, balances) = (watch.course(), watch.balances());
+    let largest: f64 = balances.iter().map(|balance| balance.largest_j).sum::<f64>().max(1e-4);
+    assert!(course.t_s.len() > 5 && course.t_s.len() < 130, "{}", course.t_s.len());
+    assert!(course.t_s[0] == 0.0 && course.t_s.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", course.t_s);
+    for (k, v) in course.v_j.iter().enumerate() {
+        let put_in: f64 = course.terms_j.iter().map(|term| term[k]).sum();
+        assert!((v - course.v_j[0] - put_in).abs() < 1e-9 * largest, "{}: {v} {put_in}", course.t_s[k]);
+    }
+    let all = |part: fn(&InjectionBalance) -> f64| balances.iter().map(part).sum::<f64>();
+    assert_eq!([course.v_j.first(), course.v_j.last()], [Some(&all(|own| own.start_j)), Some(&all(|own| own.end_j))]);
+    for (k, term) in course.terms_j.iter().enumerate() {
+        let sum: f64 = balances.iter().map(|own| own.terms_j[k]).sum();
+        assert_eq!((term.len(), term.first(), term.last()), (course.t_s.len(), Some(&0.0), Some(&sum)));
+    }
 }
 
 /// Runs a setup and requires that for every agent the terms add up and that just these causes, besides damping and holding, act.

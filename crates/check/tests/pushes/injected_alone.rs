@@ -21,6 +21,7 @@ fn watched(setup: &Setup) -> (Outcome, Vec<InjectionBalance>) {
     forwardstep_sim::validate(setup).unwrap();
     let mut watch = InjectionWatch::of(setup).unwrap();
     let outcome = simulate_watched(setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    super::injected::course_adds_up(&watch);
     (outcome, watch.balances())
 }
 

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use forwardstep::check::{self, InjectionWatch};
 use forwardstep::io::output::{
-    self, DigitalCost, GoalOutcome, Injected, Journal, Metrics, OutputError, RunFolder, RunRecord, continuous_twin,
-    ending_sentence,
+    self, DigitalCost, GoalOutcome, Injected, InjectedCourse, Journal, Metrics, OutputError, RunFolder, RunRecord,
+    continuous_twin, ending_sentence,
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
@@ -115,6 +115,7 @@ pub(super) fn execute(
     record.prediction = prediction;
     record.shapes = shapes.as_ref();
     record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
+    record.injected_course = balances.as_ref().and_then(|balances| InjectedCourse::of(&balances.course()));
     let lost = journal.failure().is_some();
     if let Some(error) = journal.failure() {
         remark(format_args!("{error}; the run was stopped, since its rows could no longer be kept"));
@@ -198,6 +199,7 @@ fn record<'a>(
         goal,
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
         shapes: None,
     }

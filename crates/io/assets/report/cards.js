@@ -204,6 +204,20 @@ const cards = {
       return { unit, said, log, series: ofAgents(columns, null, {}, log) };
     },
   },
+  injected: {
+    picks: [{ id: "cause", name: "cause", options: [["", "all causes"], ...(index.injected?.by ?? []).map(([name]) => [name, name])] }],
+    build: ([cause]) => {
+      const own = index.injected;
+      if (!own) return { series: [] };
+      const causes = own.by.map(([label, k], i) => ({ label, colour: ramp(i, own.by.length), width: 1.4, values: data.values("main", k) }));
+      if (cause) return { unit: index.energy, series: causes.filter(({ label }) => label === cause) };
+      // They add up to how V has changed.
+      const v = data.values("main", own.v);
+      const start = v.find((value) => value !== null) ?? 0;
+      const change = Object.assign(v.map((value) => (value === null ? null : value - start)), { beyond_s: v.beyond_s });
+      return { unit: index.energy, key: true, series: [...causes, { label: "V − V(0)", first: true, colour: colour("--ink"), width: 2.2, values: change }] };
+    },
+  },
   cascade: {
     picks: [{ id: "interval", name: "what is drawn", options: [["", "length"], ...joints.filter((j) => index.cascade?.low[j.axis] != null).map((j) => [String(j.axis), j.name])] }],
     build: ([axis]) => {

@@ -1,6 +1,8 @@
 //! What changed V along a run under digital control, in `summary.json` and in the report.
 
-use forwardstep_check::{Injection, InjectionBalance};
+use std::collections::BTreeMap;
+
+use forwardstep_check::{Injection, InjectionBalance, InjectionCourse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +60,50 @@ pub struct Injected {
     pub residual_j: f64,
     /// The first cause that the proof does not allow and that had put in more than 1 % of the largest V until then; null for none.
     pub first: Option<FirstInjection>,
+}
+
+/// V of all agents together over time, and what changed it, in J or the unit of V.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct InjectedCourse {
+    /// Times, s, rising.
+    pub t_s: Vec<f64>,
+    /// V then; a number that is not finite is `null`.
+    pub v: Vec<Option<f64>>,
+    /// What each cause has put in by then, by its name; causes that never put anything in are left out.
+    pub by: BTreeMap<String, Vec<Option<f64>>>,
+}
+
+impl InjectedCourse {
+    /// Of a run; `None` where none was taken.
+    pub fn of(course: &InjectionCourse) -> Option<InjectedCourse> {
+        let finite = |all: &[f64]| all.iter().map(|value| value.is_finite().then_some(*value)).collect();
+        let by = Injection::ALL.into_iter().zip(&course.terms_j).filter(|(_, all)| all.iter().any(|term| *term != 0.0));
+        (course.t_s.len() > 1).then(|| InjectedCourse {
+            t_s: course.t_s.clone(),
+            v: finite(&course.v_j),
+            by: by.map(|(cause, all)| (cause.name().to_owned(), finite(all))).collect(),
+        })
+    }
+
+    /// A series of it at other times, on straight lines; not a number where it is not known.
+    pub(crate) fn at(&self, series: &[Option<f64>], t_s: &[f64]) -> Vec<f64> {
+        let value = |k: usize| series.get(k).copied().flatten().unwrap_or(f64::NAN);
+        let one = |t: &f64| match self.t_s.partition_point(|own| own <= t) {
+            0 => f64::NAN,
+            k if k >= self.t_s.len() => {
+                if self.t_s.last() == Some(t) {
+                    value(k - 1)
+                } else {
+                    f64::NAN
+                }
+            }
+            k => {
+                let [a, b] = [self.t_s[k - 1], self.t_s[k]];
+                value(k - 1) + (t - a) / (b - a) * (value(k) - value(k - 1))
+            }
+        };
+        t_s.iter().map(one).collect()
+    }
 }
 
 /// What put energy in first.

@@ -87,7 +87,7 @@ pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
 use folder::{Staging, Written};
 pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
-pub use injected::{FirstInjection, Injected};
+pub use injected::{FirstInjection, Injected, InjectedCourse};
 pub use inputs::digest;
 pub use journal::{Journal, JournalError};
 pub use metrics::{

@@ -5,7 +5,7 @@ use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
 use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
-use super::injected::Injected;
+use super::injected::{Injected, InjectedCourse};
 use super::metrics::Metrics;
 use super::prediction::Predictions;
 use crate::scenario::{Goal, InputFile};
@@ -40,6 +40,8 @@ pub struct RunRecord<'a> {
     pub digital: Option<DigitalCost>,
     /// What changed V, agent by agent under (6)–(7); empty in continuous time.
     pub injected: Vec<Injected>,
+    /// The same over time, of all agents together.
+    pub injected_course: Option<InjectedCourse>,
     /// Remarks for the reader of the report.
     pub notices: Vec<String>,
     /// What the robots look like, if that was read.

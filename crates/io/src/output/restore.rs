@@ -140,6 +140,7 @@ impl SavedRun {
             goal,
             digital: summary.digital.clone(),
             injected: summary.injected.clone(),
+            injected_course: summary.injected_course.clone(),
             notices: summary.notices.iter().cloned().chain(remarks.iter().map(Remark::to_string)).collect(),
             shapes: self.saved.shapes.as_ref(),
         }
@@ -272,6 +273,7 @@ fn text_of(folder: &Path, name: &'static str) -> Result<String, RestoreError> {
 fn parse_summary(text: &str) -> Result<Summary, SummaryError> {
     /// What all formats have.
     #[derive(Deserialize)]
+    #[serde(expecting = "an object that states its `format`")]
     struct AnyFormat {
         format: u32,
     }

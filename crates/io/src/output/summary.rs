@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::digital::DigitalCost;
 pub use super::how::{BrokenSignal, Cause, EndingKind, How, Rates};
-use super::injected::Injected;
+use super::injected::{Injected, InjectedCourse};
 use super::inputs;
 use super::inputs::content_digest;
 use super::metrics::Metrics;
@@ -70,6 +70,9 @@ pub struct Summary {
     /// What changed V, agent by agent under (6)–(7) with digital control; absent where there are none, and in documents of older versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub injected: Vec<Injected>,
+    /// The same over time, of all agents together; absent where there is none, and in documents of older versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub injected_course: Option<InjectedCourse>,
     /// Remarks.
     pub notices: Vec<String>,
     /// The only part that differs between two runs of the same scenario by the same version.
@@ -264,6 +267,7 @@ impl Summary {
             links: Link::all(&setup.network, &record.outcome.ending),
             digital: record.digital.clone(),
             injected: record.injected.clone(),
+            injected_course: record.injected_course.clone(),
             notices: record.notices.clone(),
             timings: Timings { wall_s, simulated_per_wall: ending.t_s / wall_s },
             ending,

@@ -323,6 +323,17 @@ impl fmt::Display for Notice {
 }
 
 /// "a → b and c → d".
+/// Letters of a name that are shown.
+const MOST_LETTERS: usize = 80;
+
+fn briefly(name: &str) -> String {
+    match name.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => format!("{}…", &name[..end]),
+        None => name.to_owned(),
+    }
+}
+
 fn named(links: &[(String, String)]) -> String {
-    enumerate(links.iter().map(|(from, to)| format!("{from} → {to}")))
+    // Of a table that is none a name can be anything.
+    enumerate(links.iter().map(|(from, to)| format!("{} → {}", briefly(from), briefly(to))))
 }

@@ -272,6 +272,7 @@ fn stopped_at(scenario: &Scenario, t_s: f64, folder: &Path) -> Outcome {
         goal: None,
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: Vec::new(),
         shapes: None,
     };

@@ -210,6 +210,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: Vec::new(),
         shapes: None,
     }

@@ -22,6 +22,7 @@ use thiserror::Error;
 use self::trial::{Tried, tried};
 use super::ask::Asker;
 use super::patience::{LOOKING, Patience};
+use super::replace;
 use crate::arguments::{DelayChoice, ExchangeChoice, GraphChoice, NewOptions, count_of_agents, order};
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
@@ -41,6 +42,8 @@ enum NewError {
     Write { path: PathBuf, reason: ErrorKind },
     #[error("the path of the robot, `{}`, cannot be written down in a scenario", shown(.0))]
     NotText(PathBuf),
+    #[error("the name `{}` is not UTF-8, so that no other command could read it", shown(.0))]
+    NotUtf8(PathBuf),
     #[error("`{}` has no joints, so that friction has no effect", shown(.0))]
     NoJoints(String),
     #[error("one agent alone has no other to agree with")]
@@ -79,6 +82,7 @@ impl NewError {
             NewError::Write { .. } => None,
             NewError::NoJoints(_) => Some("leave `--dry-friction` out, or take an arm"),
             NewError::NotText(_) => Some("copy the robot beside the scenario"),
+            NewError::NotUtf8(_) => Some("give it another name"),
             NewError::Alone => Some("take two or more, or `--leader`, or a spacecraft, which has a target of its own"),
             NewError::Order { .. } => Some("choose another `--order`, or leave it out"),
             NewError::Exchange(_) => Some("leave `--exchange` out"),
@@ -113,6 +117,13 @@ pub(crate) fn new(options: &NewOptions, kinds: &Kinds, console: &mut Console) ->
 fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     if let Some(file) = options.file.as_ref().filter(|file| file.exists()) {
         return Err(refused(NewError::Exists(file.clone())));
+    }
+    // Before gains are tried, which may take a minute.
+    if let Some(file) = &options.file {
+        if file.to_str().is_none() {
+            return Err(refused(NewError::NotUtf8(file.clone())));
+        }
+        replace::may_replace(file, |_| false).map_err(|error| complain(&error))?;
     }
     let (text, tried) = match &options.like {
         Some(name) => (copied(name)?, None),

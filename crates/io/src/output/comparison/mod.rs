@@ -78,7 +78,7 @@ impl RowGroup {
         match self {
             RowGroup::Simulated => "Simulated",
             RowGroup::Promised => "Promised",
-            RowGroup::Predicted => "Predicted",
+            RowGroup::Predicted => "Predicted for s ≡ 0",
             RowGroup::Observed => "Observed",
         }
     }

@@ -51,6 +51,7 @@ pub(super) fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: 
         goal: None,
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: Vec::new(),
         shapes: None,
     }

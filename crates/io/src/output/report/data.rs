@@ -1,6 +1,7 @@
 //! What the page's plots are drawn from: a JSON index and one block of numbers.
 
 use base64::Engine;
+use forwardstep_check::Injection;
 use forwardstep_check::prediction::CascadeSpread;
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Path;
@@ -66,6 +67,15 @@ struct Index {
     cascade: Option<CascadeIndex>,
     /// The unit of V.
     energy: String,
+    /// V of all agents, and what changed it.
+    injected: Option<InjectedIndex>,
+}
+
+#[derive(Serialize)]
+struct InjectedIndex {
+    v: usize,
+    /// The series of each cause with its name.
+    by: Vec<(&'static str, usize)>,
 }
 
 /// What leads and is no agent: its motion beside those of the agents.
@@ -263,6 +273,12 @@ impl Payload {
         });
         let spread = CascadeSpread::of(record.setup, &record.outcome.recording).ok();
         let cascade = spread.map(|spread| CascadeIndex::of(record, &spread, &mut |values| main.add(values, false)));
+        let injected = record.injected_course.as_ref().map(|course| {
+            let mut series = |values: &[Option<f64>]| main.add(&course.at(values, table.t_s), false);
+            let causes =
+                Injection::ALL.into_iter().filter_map(|cause| Some((cause.name(), course.by.get(cause.name())?)));
+            InjectedIndex { v: series(&course.v), by: causes.map(|(name, values)| (name, series(values))).collect() }
+        });
         let (scene, space) = Scene::of(record.setup, table, timeline, record.shapes);
         let solid = scene.is_solid();
 
@@ -308,6 +324,7 @@ impl Payload {
             leader,
             cascade,
             energy: text::unit(&names::unit(record.setup, 0, Signal::Lyapunov, 0)),
+            injected,
         };
         let times = [&main.grid.t_s, &estimates.grid.t_s, &delay_t_s, &space.t_s];
         let delays = shown_delays.iter().filter_map(|(k, _)| delay_values.get(*k));

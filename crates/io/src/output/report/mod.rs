@@ -189,6 +189,7 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>) -> Markup {
                     (card("cascade", "Interval of the cascade", &format!("max − min of all ψ{dashed}"), ""))
                 }
                 @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
+                @if record.injected_course.is_some() { (card("injected", "V and what was injected", "of all agents together, by cause", "")) }
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
         }

@@ -19,7 +19,7 @@ fn slide() -> Markup {
             canvas #talk-slide tabindex="0" role="img" aria-label="Title, verdict, the picture in space and one plot, at the time of the clock" {}
             div.talk-tools {
                 label { "plot " select #talk-plot {} }
-                button #talk-play type="button" { "Play" }
+                button #talk-play type="button" autofocus { "Play" }
                 button #talk-full type="button" { "Full screen" }
                 button #talk-png type="button" { "PNG" }
                 button #talk-svg type="button" { "SVG" }
