@@ -179,7 +179,7 @@ fn mistakes_are_status_two_and_nothing_is_overwritten() {
     fs::write(folder.path().join("mine.toml"), "mine").unwrap();
     let cases: [(&[&str], &str); 19] = [
         (&["mine.toml"], "`mine.toml` already exists"),
-        (&["none/new.toml"], "make its folder first"),
+        (&["none/new.toml"], "make it first"),
         (&["new.toml", "--robot", "ur5"], "did you mean `ur5e`?"),
         (&["new.toml", "--robot", "none.urdf"], "cannot read `none.urdf`"),
         (&["new.toml", "--agents", "0"], "must be a whole number from 1 to 100"),
