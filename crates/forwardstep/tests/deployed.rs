@@ -270,3 +270,34 @@ fn regress_the_gain_that_samples_cannot_bear_is_named() {
         assert!(note.ends_with(&format!("let {gain} be smaller")), "{note}");
     }
 }
+
+/// What a run that missed its end says of damping and of goals is what its samples and its goal say.
+#[test]
+fn regress_no_more_damping_is_advised_where_samples_bear_no_more() {
+    let masses = |damping: u32, end_s: u32, more: &str| {
+        format!(
+            "format = 2\ntime.end_s = {end_s}\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n\
+             start.position_m = [[0], [1]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n[law.known]\n\
+             damping.gain = {damping}\n[network]\nedges.ring = {{}}\n{more}"
+        )
+    };
+    let folder = folder();
+    let said = |text: String, status: i32| {
+        fs::write(folder.path().join("own.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["run", "own.toml", "--force"]).code(status))
+    };
+    let noisy = "[control]\nsample_hz = 20\nnoise = { velocity = 1, seed = 1 }\n";
+    let stiff = said(masses(70, 10, noisy), 0);
+    assert!(
+        stiff.contains("samples are slow for the gains, with a margin σ of 0.87")
+            && !stiff.contains("raise the damping"),
+        "{stiff}"
+    );
+    let soft = said(masses(10, 10, noisy), 0);
+    assert!(soft.contains("raise the damping"), "{soft}");
+    // A goal may ask for less than agreement.
+    let early = said(masses(5, 2, "[goal]\ndisagreement_below = 0.7\n"), 0);
+    assert!(early.contains("agreed as far as the goal asks: 0.2 m apart"), "{early}");
+    let late = said(masses(5, 20, "[goal]\ndisagreement_below = 0.7\n"), 0);
+    assert!(late.contains("agreed: "), "{late}");
+}

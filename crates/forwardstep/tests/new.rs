@@ -265,6 +265,8 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
     assert!(told.contains("but hinge of arm-") && told.contains("where its effort limit is 0.1 N"), "{told}");
     let text = fs::read_to_string(folder.path().join("weak.toml")).unwrap();
     assert!(text.contains("\n# In the trial hinge of arm-") && text.contains("`enforce_limits = true`"), "{text}");
+    // Of those that all take too much the one that takes least, which is what it takes to be held.
+    assert!(told.contains("takes 6.2 N m") && text.contains("takes 4.9 N m"), "{told}{text}");
     // Gains that need no more than there is are taken where others would.
     fs::write(
         folder.path().join("fair.urdf"),
