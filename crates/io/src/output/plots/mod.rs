@@ -231,7 +231,7 @@ impl<'a> Plots<'a> {
 
     fn line(&self, grid: &Grid, values: &[f64], may_jump: bool, colour: [u8; 3]) -> Line {
         let sampled = grid.sample(self.table.t_s, values, may_jump);
-        let points = grid.t_s.iter().copied().zip(sampled.into_iter().map(f64::from)).collect();
+        let points = grid.t_s.iter().copied().zip(sampled).collect();
         Line { colour, width: 1, points }
     }
 }
