@@ -122,6 +122,7 @@ fn write(
         goal: scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, outcome, metrics) }),
         digital: None,
         injected: Vec::new(),
+        injected_course: None,
         notices: scenario.notices.iter().map(ToString::to_string).collect(),
         shapes: None,
     };

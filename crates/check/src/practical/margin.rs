@@ -18,6 +18,10 @@ use crate::kinds::is_lagrangian;
 /// is not in the model.
 pub const RECOMMENDED_MARGIN: f64 = 0.5;
 
+/// A reference whose roots are so large a part of K/M, or larger, is no longer slow beside s. Runs of loops with slower ones ceased to work at the
+/// period of the margin within a tenth, those with faster ones at down to a tenth of it.
+const RIVAL: f64 = 0.3;
+
 /// σ of the agent and the state for which sampling is worst, at the start, between the starts of all, and on the way of the references.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplingMargin {
@@ -42,9 +46,9 @@ pub struct SamplingMargin {
     /// Whether the loop as a whole was seen to decay, with references that answer s: with z frozen, as σ has it, a mode that is as fast as they are
     /// grows sooner than it does.
     pub held_by_references: bool,
-    /// The largest root of any reference, 1/s, where it is faster than the fastest mode at the start: σ freezes references, which then answer sooner
-    /// than s decays.
-    pub faster_root_per_s: Option<f64>,
+    /// The largest root of any reference, 1/s, where it is more than three tenths of the fastest mode at the start: σ freezes references, which then
+    /// answer what s does before it has decayed.
+    pub rival_root_per_s: Option<f64>,
     /// How many adaptive agents follow targets of their own. They adapt with the s of the sample that gave Y, for which no margin is
     /// known: their σ is that of the damping alone.
     pub adaptation_left_out: usize,
@@ -100,9 +104,9 @@ impl SamplingMargin {
         SamplingMargin::on(setup, &way(setup))
     }
 
-    /// Whether it speaks of every agent, and is not outrun by references: all are under (6)–(7), and no root is faster than their damping.
+    /// Whether it speaks of every agent, and no reference is a rival of it: all are under (6)–(7), with roots that are slow beside their damping.
     pub fn is_enough(setup: &Setup) -> bool {
-        let outrun = || SamplingMargin::of(setup).is_none_or(|margin| margin.faster_root_per_s.is_some());
+        let outrun = || SamplingMargin::of(setup).is_none_or(|margin| margin.rival_root_per_s.is_some());
         setup.agents.iter().all(is_lagrangian) && !outrun()
     }
 
@@ -131,7 +135,7 @@ impl SamplingMargin {
             recommended_s: longest(RECOMMENDED_MARGIN),
             anywhere: anywhere_per_s.map(|rate| period_s * rate / hold.largest_gain(period_s)),
             held_by_references: false,
-            faster_root_per_s: fastest_root_per_s(setup).filter(|root| *root > start.fastest_per_s),
+            rival_root_per_s: fastest_root_per_s(setup).filter(|root| *root > RIVAL * start.fastest_per_s),
             adaptation_left_out: learners.filter(|agent| setup.agents[*agent].law.is::<Adaptive>()).count(),
             start,
             worst,

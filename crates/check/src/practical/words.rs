@@ -279,9 +279,9 @@ fn periods(margin: &SamplingMargin) -> String {
         || format!("no period brings it below {RECOMMENDED_MARGIN}, which is recommended"),
         |period_s| format!("keep it below {RECOMMENDED_MARGIN}, a period of {} ms", ms(period_s)),
     );
-    let faster = margin.faster_root_per_s.map_or_else(String::new, |root| {
+    let faster = margin.rival_root_per_s.map_or_else(String::new, |root| {
         format!(
-            "; references with roots of up to {}/s are faster than that mode and may need shorter periods, of which whole-loop speaks",
+            "; beside references with roots of up to {}/s, which are not slow beside that mode, shorter periods may be needed, of which whole-loop speaks",
             rounded(root)
         )
     });
