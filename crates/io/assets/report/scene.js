@@ -4,12 +4,19 @@ const scene = index.scene;
 const sceneTimes = data.t("scene");
 const RAIL = 10; // how long the longest way on a rail is drawn
 
+// Whom all others come to without a law that leads them: the one agent that hears nobody, where everybody else hears somebody.
+const root = (() => {
+  if (scene.leader || agents.length < 2 || scene.graphs.some((graph, k) => graph.length < (scene.edge_counts[k] ?? 0))) return null;
+  const hear = new Set(scene.graphs.flatMap((graph) => graph.map(([, to]) => to)));
+  const deaf = [...agents.keys()].filter((i) => !hear.has(i));
+  return deaf.length === 1 ? deaf[0] : null;
+})();
 // Everybody, and a leader that is no agent, which looks like those that follow it.
 const bodies = (() => {
   const own = scene.agents.map((agent, i) => {
     // A gantry has no turns: what it holds is a point in the space of all.
     const slides = agent.kind === "arm" && scene.arms[agent.arm].joints.every((joint) => !joint.turns);
-    return { ...agent, ...(slides ? { kind: "point" } : {}), name: agents[i].name, vertex: i, leads: scene.leader?.vertex === i };
+    return { ...agent, ...(slides ? { kind: "point" } : {}), name: agents[i].name, vertex: i, leads: (scene.leader?.vertex ?? root) === i };
   });
   if (scene.leader && scene.leader.vertex >= own.length && own.length > 0) {
     const like = own[0];
