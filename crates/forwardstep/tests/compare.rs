@@ -298,6 +298,18 @@ fn what_a_sweep_varies_is_in_the_table() {
     let keys = found["rows"].as_array().unwrap().iter().map(|row| row["key"].as_str().unwrap());
     assert_eq!(keys.filter(|key| key.starts_with("scenario.")).count(), 2);
     assert_eq!(row(&found, "scenario.network.weight")["same"], false);
+    // What differs behind what is shown differs all the same; kinds without a value are told apart.
+    let far = |last: &str| {
+        masses(1.0, "")
+            .replace("edges.ring", &format!("delay.formula_s = \"0.1 + 0*({}{last})\"\nedges.ring", "t + ".repeat(30)))
+    };
+    write(&here, "one.toml", &far("1"));
+    write(&here, "other.toml", &far("2").replace("edges.ring", "edges.complete"));
+    let long = document(&here, &["one.toml", "other.toml"], "long");
+    let formulas = words(&long, "scenario.network.delay.formula_s");
+    assert!(formulas[0].ends_with('…') && formulas[0] == formulas[1], "{formulas:?}");
+    assert_eq!(row(&long, "scenario.network.delay.formula_s")["same"], false);
+    assert_eq!(words(&long, "scenario.network.edges.ring"), ["{}", "—"]);
     // Scenarios that have little in common are no variants.
     let arms = document(&here, &["half.toml", "six-arms"], "other");
     assert!(arms["rows"].as_array().unwrap().iter().all(|row| !row["key"].as_str().unwrap().starts_with("scenario.")));

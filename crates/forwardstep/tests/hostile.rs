@@ -40,7 +40,7 @@ fn regress_no_output_replaces_a_file_of_somebody_else() {
         let made = std::process::Command::new("mkfifo").arg(folder.path().join("pipe")).status().unwrap();
         assert!(made.success());
         let unread = stderr(&forwardstep(&folder, &["check", "own.toml", "--certificate", "pipe"]).code(2));
-        assert!(unread.contains("`pipe` is a pipe from which nobody reads"), "{unread}");
+        assert!(unread.contains("`pipe` is a pipe that no program reads"), "{unread}");
     }
     let missing = stderr(&forwardstep(&folder, &["check", "own.toml", "--certificate", "no/x.json"]).code(2));
     assert!(missing.contains("there is no folder `no`") && missing.contains("make it first"), "{missing}");

@@ -10,6 +10,14 @@ pub(crate) fn more_mistakes(count: usize) -> String {
     format!("{count} more {words} reported once these are mended")
 }
 
+/// So many letters of a text, with a mark where there is more: what a file holds where a name should be can be anything.
+pub(crate) fn beginning(text: &str, letters: usize) -> String {
+    match text.char_indices().nth(letters) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
 /// "1 list", "2 lists".
 pub(crate) fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }

@@ -228,9 +228,8 @@ impl Watch for InjectionWatch<'_> {
     }
 
     fn inside(&mut self, at: Inside<'_>) {
-        // The first agent begins a step when all have ended the one before.
-        let begins = at.place == Place::Start && at.t_s >= self.now_s;
-        if begins && self.taken.as_ref().is_some_and(|taken| taken.is_due(self.now_s)) {
+        // When the first agent begins a step all have ended the one before.
+        if at.place == Place::Start && self.taken.as_ref().is_some_and(|taken| taken.is_due(self.now_s)) {
             let balances = self.balances();
             self.taken.iter_mut().for_each(|taken| taken.point(self.now_s, &balances));
         }

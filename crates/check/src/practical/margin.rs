@@ -152,11 +152,10 @@ impl SamplingMargin {
     /// Which gain makes σ what it is, as it is to be made smaller: `K`, `Γ`, or both.
     pub fn too_large(&self) -> &'static str {
         let MarginAt { sigma, damping_sigma, .. } = self.worst;
-        match (damping_sigma > RECOMMENDED_MARGIN, damping_sigma > 0.9 * sigma) {
-            (true, true) => "K",
-            (true, false) => "K and Γ",
-            (false, true) => "K",
-            (false, false) => "Γ",
+        match damping_sigma {
+            alone if alone > 0.9 * sigma => "K",
+            alone if alone > RECOMMENDED_MARGIN => "K and Γ",
+            _ => "Γ",
         }
     }
 

@@ -7,8 +7,10 @@ use forwardstep_check::{Injection, InjectionBalance, InjectionWatch};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::push::{Effect, Push};
+use forwardstep_sim::recording::SampleTaken;
 use forwardstep_sim::{
-    Adaptive, Control, Exchange, Known, Outcome, Sensors, Setup, Signal, VelocitySensor, simulate_watched,
+    Adaptive, Control, Exchange, Inside, Known, Outcome, Place, Sensors, Setup, Signal, VelocitySensor, Watch,
+    recorded_columns, simulate_watched,
 };
 
 use super::{agent, arm, constant, pulse, ring, rough_handling, run};
@@ -92,6 +94,45 @@ fn only(setup: &Setup, causes: &[Injection]) -> Vec<InjectionBalance> {
         }
     }
     balances
+}
+
+/// V of every agent at the end of every step, beside the watch that is looked at.
+struct Ends<'a> {
+    watch: InjectionWatch<'a>,
+    lyapunov: usize,
+    steps: Vec<(f64, f64)>,
+}
+
+impl Watch for Ends<'_> {
+    fn sampled(&mut self, taken: SampleTaken<'_>) {
+        self.watch.sampled(taken);
+    }
+
+    fn inside(&mut self, at: Inside<'_>) {
+        let ends = (at.place == Place::End).then(|| (at.agent, at.t_s, at.values[self.lyapunov]));
+        self.watch.inside(at);
+        match ends {
+            Some((0, t_s, v)) => self.steps.push((t_s, v)),
+            Some((_, _, v)) => self.steps.last_mut().unwrap().1 += v,
+            None => {}
+        }
+    }
+}
+
+/// A point of a course has V of all agents at the end of one step.
+#[test]
+fn the_course_of_what_is_put_in_has_all_agents_at_one_time() {
+    let setup = arms(100.0);
+    let columns = recorded_columns(&setup).unwrap();
+    let mut own = columns.iter().filter(|column| column.agent == 0);
+    let lyapunov = own.position(|column| column.signal == Signal::Lyapunov).unwrap();
+    let mut ends = Ends { watch: InjectionWatch::of(&setup).unwrap(), lyapunov, steps: Vec::new() };
+    simulate_watched(&setup, &mut |_| ControlFlow::Continue(()), &mut ends).unwrap();
+    let course = ends.watch.course();
+    assert!(course.t_s.len() > 100 && ends.steps.len() > 2 * course.t_s.len());
+    for (t_s, v) in course.t_s.iter().zip(&course.v_j).skip(1) {
+        assert!(ends.steps.contains(&(*t_s, *v)), "{t_s}: {v}");
+    }
 }
 
 const ADAPTS: &[Injection] = &[Injection::Adaptation];

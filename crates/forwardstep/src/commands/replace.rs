@@ -27,10 +27,10 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
             let said = format!("`{}` already exists, and this command did not write it", shown(path));
             Err(Plain::with_help(said, Some("give another name; it would be lost")))
         }
-        // Who writes into a pipe waits until somebody reads.
+        // What is written into a pipe waits for its reader.
         Ok(_) if is_unread(path) => Err(Plain::with_help(
-            format!("`{}` is a pipe from which nobody reads", shown(path)),
-            Some("start who reads it first, or name a file"),
+            format!("`{}` is a pipe that no program reads", shown(path)),
+            Some("start its reader first, or name a file"),
         )),
         // A terminal, a pipe, or nothing.
         Ok(_) => Ok(()),

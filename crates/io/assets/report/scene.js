@@ -4,7 +4,7 @@ const scene = index.scene;
 const sceneTimes = data.t("scene");
 const RAIL = 10; // how long the longest way on a rail is drawn
 
-// Whom all others come to without a law that leads them: the one agent that hears nobody, where everybody else hears somebody.
+// Whom all others come to without a law that leads them: the one agent that hears no other, where all others hear some.
 const root = (() => {
   if (scene.leader || agents.length < 2 || scene.graphs.some((graph, k) => graph.length < (scene.edge_counts[k] ?? 0))) return null;
   const hear = new Set(scene.graphs.flatMap((graph) => graph.map(([, to]) => to)));

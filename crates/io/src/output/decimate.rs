@@ -1,4 +1,4 @@
-//! Fewer points for display that look the same: the least and greatest value of every bucket of rows, and break-points
+//! Fewer points for display that look the same, and what is between them: the least and greatest value of every bucket of rows, and break-points
 //! at which a signal that jumps is drawn as a jump.
 
 use std::ops::Range;
@@ -91,6 +91,25 @@ impl Grid {
         }
         points
     }
+}
+
+/// Values at times that rise, on straight lines between those that were kept, of which the first and the last go on.
+pub(crate) fn between(kept_s: &[f64], kept: &[f64], t_s: &[f64]) -> Vec<f64> {
+    let mut next = 0;
+    let value = |t_s: &f64| {
+        while kept_s.get(next).is_some_and(|kept_s| kept_s < t_s) {
+            next += 1;
+        }
+        let (to, before) = (next.min(kept_s.len().saturating_sub(1)), next.saturating_sub(1));
+        match (kept_s.get(before).zip(kept_s.get(to)), kept.get(before).zip(kept.get(to))) {
+            (Some((from_s, to_s)), Some((from, to))) if to_s > from_s => {
+                from + (to - from) * ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0)
+            }
+            (_, Some((_, to))) => *to,
+            (_, None) => f64::NAN,
+        }
+    };
+    t_s.iter().map(value).collect()
 }
 
 fn split(rows_t_s: &[f64], break_points: &[f64]) -> Vec<Break> {

@@ -107,7 +107,6 @@ impl RunFolder {
             may_be_replaced(path)?;
         }
         in_the_way(path, FILES.into_iter().chain([JOURNAL, PAGE, DOCUMENT]))?;
-        unlinked(path, MANIFEST)?;
         folder.probe()?;
         Ok(folder)
     }

@@ -6,6 +6,7 @@ use forwardstep_check::{Injection, InjectionBalance, InjectionCourse};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::decimate::between;
 use super::number;
 
 /// V of one agent from its first sample to the end, and what each cause put in, in J or the unit of its V: the terms add up to the change of V, but
@@ -85,24 +86,10 @@ impl InjectedCourse {
         })
     }
 
-    /// A series of it at other times, on straight lines; not a number where it is not known.
+    /// A series of it at times that rise, by straight lines between those that are kept; not a number where it is not known.
     pub(crate) fn at(&self, series: &[Option<f64>], t_s: &[f64]) -> Vec<f64> {
-        let value = |k: usize| series.get(k).copied().flatten().unwrap_or(f64::NAN);
-        let one = |t: &f64| match self.t_s.partition_point(|own| own <= t) {
-            0 => f64::NAN,
-            k if k >= self.t_s.len() => {
-                if self.t_s.last() == Some(t) {
-                    value(k - 1)
-                } else {
-                    f64::NAN
-                }
-            }
-            k => {
-                let [a, b] = [self.t_s[k - 1], self.t_s[k]];
-                value(k - 1) + (t - a) / (b - a) * (value(k) - value(k - 1))
-            }
-        };
-        t_s.iter().map(one).collect()
+        let known: Vec<f64> = series.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+        between(&self.t_s, &known, t_s)
     }
 }
 

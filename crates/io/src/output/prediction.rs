@@ -10,6 +10,7 @@ use forwardstep_sim::{Setup, ThrustLaw};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::decimate::between;
 use super::guarantee::Guarantee;
 use super::report::text::number as number_words;
 use super::{names, number};
@@ -296,24 +297,7 @@ impl CourseFound {
 
     /// The disagreement at times that rise, by straight lines between those that are kept.
     pub(crate) fn at(&self, t_s: &[f64]) -> Vec<f64> {
-        let mut next = 0;
-        let value = |t_s: &f64| {
-            while self.t_s.get(next).is_some_and(|kept_s| kept_s < t_s) {
-                next += 1;
-            }
-            let (to, before) = (next.min(self.t_s.len().saturating_sub(1)), next.saturating_sub(1));
-            match (
-                self.t_s.get(before).zip(self.t_s.get(to)),
-                self.disagreement.get(before).zip(self.disagreement.get(to)),
-            ) {
-                (Some((from_s, to_s)), Some((from, to))) if to_s > from_s => {
-                    from + (to - from) * ((t_s - from_s) / (to_s - from_s)).clamp(0.0, 1.0)
-                }
-                (_, Some((_, to))) => *to,
-                (_, None) => f64::NAN,
-            }
-        };
-        t_s.iter().map(value).collect()
+        between(&self.t_s, &self.disagreement, t_s)
     }
 
     /// The largest torque of all.

@@ -9,7 +9,7 @@ use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, PositionKind, Setup};
 
 use super::attitude::turn_rad;
 use crate::urdf;
-use crate::wording::{about, enumerate, number};
+use crate::wording::{about, beginning, enumerate, number};
 
 /// Something in an accepted scenario that the user should know about.
 #[derive(Clone, Debug)]
@@ -326,14 +326,7 @@ impl fmt::Display for Notice {
 /// Letters of a name that are shown.
 const MOST_LETTERS: usize = 80;
 
-fn briefly(name: &str) -> String {
-    match name.char_indices().nth(MOST_LETTERS) {
-        Some((end, _)) => format!("{}…", &name[..end]),
-        None => name.to_owned(),
-    }
-}
-
 fn named(links: &[(String, String)]) -> String {
-    // Of a table that is none a name can be anything.
-    enumerate(links.iter().map(|(from, to)| format!("{} → {}", briefly(from), briefly(to))))
+    let short = |name| beginning(name, MOST_LETTERS);
+    enumerate(links.iter().map(|(from, to)| format!("{} → {}", short(from), short(to))))
 }

@@ -17,7 +17,7 @@ use super::push_problem::PushProblem;
 use super::shipped::shipped_table;
 use super::value_problem::ValueProblem;
 use crate::files::ReadError;
-use crate::wording::{choose, entry_count, more_mistakes};
+use crate::wording::{beginning, choose, entry_count, more_mistakes};
 use crate::{Meant, SourceText};
 
 /// Why a table has no meaning.
@@ -283,10 +283,7 @@ fn read_rows<'a>(
 }
 
 fn unknown_column(cell: &Cell<'_>, columns: Vec<String>) -> TableProblem {
-    let short = |end| format!("{}…", &cell.value[..end]);
-    let name =
-        cell.value.char_indices().nth(LONGEST_NAME).map_or_else(|| cell.value.to_string(), |(end, _)| short(end));
-    TableProblem::UnknownColumn { name, columns }
+    TableProblem::UnknownColumn { name: beginning(&cell.value, LONGEST_NAME), columns }
 }
 
 /// The number in a cell; none in an empty one.

@@ -9,7 +9,7 @@ use super::notice::{Notice, NoticeKind};
 use super::problem::UrdfProblem;
 use super::subject::{AttributeOf, Owner, Size};
 use crate::shown::breaks_lines;
-use crate::wording::nearest;
+use crate::wording::{beginning, nearest};
 use crate::{InputError, Meant, SourceText};
 
 /// Bytes accepted; the largest robots in use have less than one million.
@@ -472,8 +472,5 @@ impl<'a> Element<'a> {
 
 /// The beginning of a text, for messages.
 fn excerpt(text: &str) -> String {
-    match text.char_indices().nth(40) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+    beginning(text, 40)
 }

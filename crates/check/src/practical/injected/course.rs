@@ -22,33 +22,27 @@ pub struct InjectionCourse {
 pub(super) struct Taken {
     course: InjectionCourse,
     every_s: f64,
-    next_s: f64,
 }
 
 impl Taken {
     pub(super) fn new(end_s: f64) -> Self {
-        Taken { course: InjectionCourse::default(), every_s: end_s / POINTS, next_s: 0.0 }
+        Taken { course: InjectionCourse::default(), every_s: end_s / POINTS }
     }
 
-    /// Whether a point is due, at the start of a step.
+    /// Whether a point is due.
     pub(super) fn is_due(&self, t_s: f64) -> bool {
-        t_s >= self.next_s && self.course.t_s.last().is_none_or(|last| t_s > *last)
+        self.course.t_s.last().is_none_or(|last| t_s >= last + self.every_s)
     }
 
     /// A point, from the balances up to then.
     pub(super) fn point(&mut self, t_s: f64, balances: &[InjectionBalance]) {
-        // None has begun before the end of the first step.
-        if balances.is_empty() {
-            return;
-        }
-        self.next_s = t_s + self.every_s;
         self.course.push(t_s, balances);
     }
 
     /// The course up to now.
     pub(super) fn until(&self, t_s: f64, balances: &[InjectionBalance]) -> InjectionCourse {
         let mut course = self.course.clone();
-        if course.t_s.last().is_none_or(|last| t_s > *last) && !balances.is_empty() {
+        if course.t_s.last().is_none_or(|last| t_s > *last) {
             course.push(t_s, balances);
         }
         course
@@ -56,19 +50,16 @@ impl Taken {
 }
 
 impl InjectionCourse {
+    /// Nothing before the end of the first step, when no balance has begun.
     fn push(&mut self, t_s: f64, balances: &[InjectionBalance]) {
+        if balances.is_empty() {
+            return;
+        }
+        let sum = |part: &dyn Fn(&InjectionBalance) -> f64| balances.iter().map(part).sum::<f64>();
         if self.t_s.is_empty() {
-            let start: f64 = balances.iter().map(|balance| balance.start_j).sum();
-            self.put(0.0, start, [0.0; 8]);
+            self.put(0.0, sum(&|balance| balance.start_j), [0.0; 8]);
         }
-        let v = balances.iter().map(|balance| balance.end_j).sum();
-        let mut terms = [0.0; 8];
-        for balance in balances {
-            terms.iter_mut().zip(balance.terms_j).for_each(|(sum, term)| *sum += term);
-        }
-        if self.t_s.last().is_none_or(|last| t_s > *last) {
-            self.put(t_s, v, terms);
-        }
+        self.put(t_s, sum(&|balance| balance.end_j), core::array::from_fn(|k| sum(&|balance| balance.terms_j[k])));
     }
 
     fn put(&mut self, t_s: f64, v_j: f64, terms_j: [f64; 8]) {

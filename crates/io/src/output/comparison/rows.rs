@@ -15,12 +15,15 @@ use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate, Pred
 use super::super::report::text::{self, number, superscript};
 use super::super::table::Table;
 use super::{Compared, ComparedCell as Cell, ComparedRow as Row, RowGroup, words};
+use crate::wording::beginning;
 
 /// Why a run has no prediction.
 const NOT_AGREED_UPON: &str = "nothing is agreed upon: agents follow targets or a leader";
 const UNPREDICTED: &str = "it was not predicted; `forwardstep run --predict` predicts";
 /// Where more keys of scenarios differ they are others, and no variants.
 const MOST_VARIED: usize = 12;
+/// Letters of a value of a scenario that are shown.
+const MOST_LETTERS: usize = 80;
 /// What rows of their own show, or what is no number.
 const SHOWN_ELSEWHERE: [&str; 4] = ["format", "title", "law", "reference"];
 
@@ -173,7 +176,7 @@ fn varied(subjects: &[Subject<'_>]) -> Vec<Row> {
         return Vec::new();
     }
     let cell = |stated: &BTreeMap<String, String>, path: &String| match stated.get(path) {
-        Some(value) => Cell::words(value),
+        Some(value) => Cell::words(beginning(value, MOST_LETTERS)),
         None => Cell::none("the scenario does not state it"),
     };
     let row = |path: &String| {

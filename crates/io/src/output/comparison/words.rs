@@ -64,55 +64,40 @@ fn said(scenario: &Table, key: &str) -> Option<String> {
 
 /// `adaptive: damping.gain = [60, 60, 12]`.
 fn written(value: &Value) -> String {
-    let Some((kind, inner)) = value.as_table().filter(|table| table.len() == 1).and_then(|table| table.iter().next())
-    else {
-        let mut entries = Vec::new();
-        flatten("", value, &mut entries);
-        return entries.join(", ");
-    };
+    let kind = value.as_table().filter(|table| table.len() == 1).and_then(|table| table.iter().next());
     let mut entries = Vec::new();
-    flatten("", inner, &mut entries);
-    if entries.is_empty() { kind.clone() } else { format!("{kind}: {}", entries.join(", ")) }
-}
-
-/// Letters of a value that are shown.
-const MOST_LETTERS: usize = 80;
-
-/// What a scenario states, by the paths of its keys; agents by name.
-pub(super) fn stated(scenario: &Table) -> BTreeMap<String, String> {
-    let mut all = BTreeMap::new();
-    scenario.iter().for_each(|(key, value)| state(key.clone(), value, &mut all));
-    all
-}
-
-fn state(path: String, value: &Value, into: &mut BTreeMap<String, String>) {
-    match value {
-        Value::Table(table) if !table.is_empty() => {
-            table.iter().for_each(|(key, value)| state(format!("{path}.{key}"), value, into));
-        }
-        Value::Array(entries) if entries.iter().any(Value::is_table) => {
-            for (k, entry) in entries.iter().enumerate() {
-                let name = entry.get("name").and_then(Value::as_str);
-                state(format!("{path}.{}", name.map_or_else(|| (k + 1).to_string(), str::to_owned)), entry, into);
-            }
-        }
-        value => {
-            let text = value.to_string();
-            let cut: String = text.chars().take(MOST_LETTERS).collect();
-            into.insert(path, if cut.len() < text.len() { format!("{cut}…") } else { text });
-        }
+    flatten("", kind.map_or(value, |(_, inner)| inner), &mut entries);
+    let stated =
+        |(path, text): &(String, String)| if path.is_empty() { text.clone() } else { format!("{path} = {text}") };
+    let all = entries.iter().map(stated).collect::<Vec<_>>().join(", ");
+    match kind {
+        Some((kind, _)) if all.is_empty() => kind.clone(),
+        Some((kind, _)) => format!("{kind}: {all}"),
+        None => all,
     }
 }
 
-fn flatten(path: &str, value: &Value, into: &mut Vec<String>) {
+/// What a scenario states, by the paths of its keys; agents by name.
+pub(super) fn stated(scenario: &Table) -> BTreeMap<String, String> {
+    let mut all = Vec::new();
+    scenario.iter().for_each(|(key, value)| flatten(key, value, &mut all));
+    all.into_iter().collect()
+}
+
+/// The values below a path, each with its own. What is there by its name alone is `{}`.
+fn flatten(path: &str, value: &Value, into: &mut Vec<(String, String)>) {
+    let below = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     match value {
-        Value::Table(table) => {
-            for (key, value) in table {
-                flatten(&if path.is_empty() { key.clone() } else { format!("{path}.{key}") }, value, into);
+        Value::Table(table) if path.is_empty() || !table.is_empty() => {
+            table.iter().for_each(|(key, value)| flatten(&below(key), value, into));
+        }
+        Value::Array(all) if all.iter().any(Value::is_table) => {
+            for (k, entry) in all.iter().enumerate() {
+                let name = entry.get("name").and_then(Value::as_str);
+                flatten(&below(&name.map_or_else(|| (k + 1).to_string(), str::to_owned)), entry, into);
             }
         }
-        _ if path.is_empty() => into.push(plain(value)),
-        _ => into.push(format!("{path} = {}", plain(value))),
+        value => into.push((path.to_owned(), plain(value))),
     }
 }
 
@@ -121,6 +106,7 @@ fn plain(value: &Value) -> String {
         Value::String(text) => text.clone(),
         Value::Float(number) => number.to_string(),
         Value::Array(all) => format!("[{}]", all.iter().map(plain).collect::<Vec<_>>().join(", ")),
+        Value::Table(table) if table.is_empty() => "{}".to_owned(),
         other => other.to_string(),
     }
 }
