@@ -192,6 +192,14 @@ mod tests {
     }
 
     #[test]
+    fn between_two_that_were_kept_is_a_line_and_beyond_them_the_nearest() {
+        let at = |t_s: &[f64]| between(&[0.0, 1.0, 3.0], &[2.0, 4.0, -2.0], t_s);
+        assert_eq!(at(&[-1.0, 0.0, 0.25, 1.0, 2.0, 3.0, 5.0]), [2.0, 2.0, 2.5, 4.0, 1.0, -2.0, -2.0]);
+        assert!(between(&[], &[], &[1.0])[0].is_nan() && between(&[0.0, 1.0], &[0.0, f64::NAN], &[0.5])[0].is_nan());
+        assert_eq!(between(&[2.0], &[7.0], &[0.0, 2.0, 3.0]), [7.0; 3]);
+    }
+
+    #[test]
     fn a_jump_between_rows_is_upright_and_a_slope_stays_a_slope() {
         let t_s = rows(11, 0.1);
         let grid = Grid::new(&t_s, &[0.25], 100);
