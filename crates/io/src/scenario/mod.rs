@@ -238,15 +238,35 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
     let document = Document::parse(source)?;
     Document::readable(&document.format()?, source)?;
     let file = document.file(kinds).map_err(|fault| {
-        let others = others::others(&fault, source, kinds);
-        fault.beside(others)
+        let mut others = others::others(&fault, source, kinds);
+        // Where nothing but keys is wrong, values are looked at as well.
+        let mended = others.mended.take().and_then(|mended| Some((mended.file(kinds).ok()?, mended)));
+        let values = mended.map(|(file, mended)| valued(name, source, &mended, file, &mut folder, kinds));
+        fault.beside(match values {
+            Some(Err(Stop::Here(values))) => others.with(values),
+            _ => others.found,
+        })
     })?;
-    let mut scenario = meaning(name, source, &document, file, &mut folder, kinds).map_err(|stop| match stop {
+    let mut scenario = valued(name, source, &document, file, &mut folder, kinds)?;
+    scenario.inputs = folder.into_read();
+    Ok(scenario)
+}
+
+/// What the tables of a scenario mean, else all that is wrong with its values.
+fn valued(
+    name: &str,
+    source: &SourceText,
+    document: &Document<'_>,
+    file: ScenarioFile,
+    folder: &mut InputFolder,
+    kinds: &Kinds,
+) -> Result<Scenario, Stop> {
+    meaning(name, source, document, file, folder, kinds).map_err(|stop| match stop {
         Stop::Here(fault) => {
-            let reads = affordable(source, &document, &folder, kinds);
-            let others = impossible::others(&fault, &document, reads, &mut |document| {
+            let reads = affordable(source, document, folder, kinds);
+            let others = impossible::others(&fault, document, reads, &mut |document| {
                 let Ok(file) = document.file(kinds) else { return Reading::Unreadable };
-                match meaning(name, source, document, file, &mut folder, kinds) {
+                match meaning(name, source, document, file, folder, kinds) {
                     Ok(_) => Reading::Sound,
                     Err(Stop::Here(fault)) => Reading::Fault(fault),
                     Err(Stop::Robot(_)) => Reading::Unreadable,
@@ -255,9 +275,7 @@ fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds)
             Stop::Here(fault.beside(others))
         }
         robot @ Stop::Robot(_) => robot,
-    })?;
-    scenario.inputs = folder.into_read();
-    Ok(scenario)
+    })
 }
 
 /// How often a scenario that has no meaning may be read again to find out what else is wrong.

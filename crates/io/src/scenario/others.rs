@@ -1,7 +1,10 @@
 //! All that is wrong with the form of a scenario: keys, kinds of values, choices.
 //!
 //! A reader that builds typed structs stops at its first mistake. So what is mistaken is cut out of the tree and the rest read
-//! again, until nothing more is found. A cut leaves a gap, and what is said of a gap is not said to the user.
+//! again, until nothing more is found. A cut leaves a gap, and what is said of a gap is not said to the user. A slip of the pen in a key
+//! leaves none: what was meant stands there then.
+//!
+//! Once the form is sound, values can be looked at as well.
 
 use std::ops::Range;
 
@@ -11,6 +14,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use super::document::Document;
 use super::fault::Fault;
 use super::kinds::Kinds;
+use super::network_problem::NetworkProblem;
 use super::problem::ScenarioProblem;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
@@ -19,37 +23,122 @@ use crate::wording::nearest;
 /// No more are told at once.
 const MOST: usize = 20;
 
-/// What else is wrong with the form of the scenario, in the order of the file.
-pub(super) fn others(first: &Fault, source: &SourceText, kinds: &Kinds) -> Vec<Fault> {
-    let mut found = Vec::new();
-    let Ok(mut document) = Document::parse(source) else { return found };
-    let mut cut: Vec<String> = Vec::new();
-    let mut span = first.span.clone();
-    // Every cut makes the tree smaller; those that are not told count too.
+/// What else is wrong with the form of a scenario.
+pub(super) struct Others<'i> {
+    /// In the order of the file.
+    pub(super) found: Vec<Fault>,
+    /// The scenario with all of it mended, if nothing had to be cut out but keys that nothing reads.
+    pub(super) mended: Option<Document<'i>>,
+    gaps: Gaps,
+}
+
+/// What may be missed, or wrong, only because of what was mended.
+#[derive(Default)]
+struct Gaps {
+    /// Keys that were cut out.
+    cut: Vec<String>,
+    /// Places of the values under keys that were guessed.
+    guessed: Vec<Range<usize>>,
+}
+
+impl Others<'_> {
+    /// With what is wrong with the values of the mended scenario, unless it may be wrong only because of what was cut out.
+    pub(super) fn with(mut self, mut values: Fault) -> Vec<Fault> {
+        let further = std::mem::take(&mut values.others);
+        let told = std::iter::once(values).chain(further).filter(|fault| !self.gaps.explain(fault));
+        self.found.extend(told);
+        self.found
+    }
+}
+
+/// What else is wrong with the form of the scenario.
+pub(super) fn others<'i>(first: &Fault, source: &'i SourceText, kinds: &Kinds) -> Others<'i> {
+    let mut others = Others { found: Vec::new(), mended: None, gaps: Gaps::default() };
+    let Ok(mut document) = Document::parse(source) else { return others };
+    let mut is_whole = true;
+    let mut last = Step::of(first);
+    // Every step makes the tree smaller or what is unknown less; those that are not told count too.
     for _ in 0..10 * MOST {
-        let Some(key) = span.take().and_then(|span| without(document.root_mut(), &span)) else { break };
-        cut.push(key);
-        let Err(fault) = document.file(kinds) else { break };
-        span.clone_from(&fault.span);
-        if !is_of_a_gap(&fault, &cut) {
-            found.push(fault);
+        let Some(step) = last.take() else { break };
+        let guessed = step.meant.and_then(|meant| renamed(document.root_mut(), &step.span, &meant));
+        if let Some(value) = guessed {
+            others.gaps.guessed.push(value);
+        } else {
+            let Some(key) = without(document.root_mut(), &step.span) else { break };
+            others.gaps.cut.push(key);
+            is_whole &= step.is_spare;
         }
-        if found.len() == MOST {
+        let fault = match document.file(kinds) {
+            Ok(_) => {
+                others.mended = Some(document).filter(|_| is_whole);
+                break;
+            }
+            Err(fault) => fault,
+        };
+        last = Step::of(&fault);
+        if !others.gaps.explain(&fault) {
+            others.found.push(fault);
+        }
+        if others.found.len() == MOST {
             break;
         }
     }
-    found.sort_by_key(|fault| fault.span.as_ref().map_or(0, |span| span.start));
-    found
+    others.found.sort_by_key(|fault| fault.span.as_ref().map_or(0, |span| span.start));
+    others
 }
 
-/// Whether something is missed that was cut out, under this name or as a slip of it.
-fn is_of_a_gap(fault: &Fault, cut: &[String]) -> bool {
-    match &*fault.problem {
-        ScenarioProblem::Value(ValueProblem::MissingKey { key }) => {
-            cut.iter().any(|cut| nearest(cut, [*key]).is_some())
+/// How a mistake is mended so that the rest can be read.
+struct Step {
+    span: Range<usize>,
+    /// The key that was meant.
+    meant: Option<String>,
+    /// Whether nothing reads what is cut out.
+    is_spare: bool,
+}
+
+impl Step {
+    fn of(fault: &Fault) -> Option<Step> {
+        let (meant, is_spare) = match &*fault.problem {
+            ScenarioProblem::Value(ValueProblem::UnknownKey { key, allowed }) => {
+                (nearest(key, allowed.iter().copied()), true)
+            }
+            _ => (None, false),
+        };
+        Some(Step { span: fault.span.clone()?, meant, is_spare })
+    }
+}
+
+/// Gives the key that stands at `span` another name, unless there is one of that name already; the place of its value.
+fn renamed(value: &mut DeValue<'_>, span: &Range<usize>, meant: &str) -> Option<Range<usize>> {
+    match value {
+        DeValue::Table(table) => {
+            let inner = table.iter_mut().find_map(|(_, value)| renamed(value.get_mut(), span, meant));
+            if inner.is_some() || table.contains_key(meant) {
+                return inner;
+            }
+            let key = table.keys().find(|key| key.span() == *span)?.get_ref().to_string();
+            let value = table.remove(key.as_str())?;
+            let place = value.span();
+            table.insert(Spanned::new(span.clone(), meant.to_owned().into()), value);
+            Some(place)
         }
-        ScenarioProblem::Value(ValueProblem::NoChoice { .. } | ValueProblem::Empty { .. }) => true,
-        _ => false,
+        DeValue::Array(list) => list.iter_mut().find_map(|entry| renamed(entry.get_mut(), span, meant)),
+        _ => None,
+    }
+}
+
+impl Gaps {
+    fn explain(&self, fault: &Fault) -> bool {
+        match &*fault.problem {
+            // Under this name or as a slip of it.
+            ScenarioProblem::Value(ValueProblem::MissingKey { key }) => {
+                self.cut.iter().any(|cut| nearest(cut, [*key]).is_some())
+            }
+            ScenarioProblem::Value(ValueProblem::NoChoice { .. } | ValueProblem::Empty { .. }) => true,
+            // What does not go together may have been meant otherwise.
+            ScenarioProblem::Network(NetworkProblem::Missing) | ScenarioProblem::Setup(_) => !self.cut.is_empty(),
+            _ => fault.span.as_ref().is_some_and(|span| self.guessed.contains(span)),
+        }
     }
 }
 

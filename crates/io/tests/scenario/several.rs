@@ -50,6 +50,26 @@ fn what_is_missed_because_of_another_mistake_is_not_told() {
 }
 
 #[test]
+fn slips_in_keys_do_not_hide_mistakes_of_values() {
+    let slips = [("record_every_s", "recrod_every_s"), ("[goal]", "[gaol]")];
+    let values = [("end_s = 10", "end_s = -10"), ("disagreement_below = 1e-3", "disagreement_below = -1e-3")];
+    let found = all(&[&slips[..], &values].concat());
+    let expected = [
+        "test.toml:6:1: unknown key `recrod_every_s`",
+        "test.toml:37:2: unknown key `gaol`",
+        "test.toml:5:9: `end_s` is -10, but must be positive",
+        "test.toml:38:22: `disagreement_below` is -0.001, but must be positive",
+    ];
+    assert_eq!(found, expected);
+    // A key that is there already is not what was meant, and a table that nothing reads hides only what it may be about.
+    let twice = [("end_s = 10", "end_s = -10\nends_s = 3"), ("weight = 1.0", "obstacles = [1.0]")];
+    let found = all(&twice);
+    assert!(found.len() == 3 && found[2].contains("`end_s` is -10"), "{found:?}");
+    // What a key that is not known stood for may be what is missed then.
+    assert_eq!(all(&[("[network]", "[wires]"), ("end_s = 10", "end_s = 20")]).len(), 1);
+}
+
+#[test]
 fn not_more_are_told_than_can_be_read() {
     let mut keys = String::from("title = \"test\"\n");
     (0..100).for_each(|k| writeln!(keys, "key_{k} = {k}").unwrap());
