@@ -142,7 +142,7 @@ impl<S: Scalar> ResolvedGain<S> {
                 }
             }
             ResolvedGain::Matrix { size, entries } => {
-                for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
+                for (out, row) in out.iter_mut().zip(entries.chunks_exact((*size).max(1))) {
                     for (a, x) in row.iter().zip(x) {
                         *out = a.mul_add(*x, *out);
                     }
@@ -161,7 +161,7 @@ impl<S: Scalar> ResolvedGain<S> {
                 }
             }
             ResolvedGain::Matrix { size, entries } => {
-                for (out, row) in out.iter_mut().zip(entries.chunks_exact(*size)) {
+                for (out, row) in out.iter_mut().zip(entries.chunks_exact((*size).max(1))) {
                     for (a, x) in row.iter().zip(x) {
                         *out = a.neg_mul_add(*x, *out);
                     }
@@ -259,7 +259,7 @@ impl InverseQuadratic {
             return sum;
         }
         // gain = L Lᵀ, so the value is |L⁻¹ x|².
-        for (i, row) in self.factor.chunks_exact(self.size).enumerate() {
+        for (i, row) in self.factor.chunks_exact(self.size.max(1)).enumerate() {
             let mut v = x.get(i).copied().unwrap_or(0.0);
             for (l, y) in row.iter().zip(&self.work[..i]) {
                 v -= l * y;

@@ -56,3 +56,13 @@ fn regress_gains_that_are_none() {
     assert_eq!(Gain::Bandwidth(-20.0).resolve(1, &[-1.0]), Err(GainError::NotPositive { index: 0, value: -20.0 }));
     assert_eq!(Gain::Bandwidth(20.0).resolve(2, &[1.0, 0.0]), Err(GainError::NotPositive { index: 1, value: 0.0 }));
 }
+
+#[test]
+fn regress_a_matrix_of_no_rows_does_nothing() {
+    let none = Gain::Matrix(Vec::new()).resolve(0, &[]).unwrap();
+    let mut out = [3.0];
+    none.apply(&[], &mut out);
+    none.subtract_from(&[], &mut out);
+    none.solve(&mut out);
+    assert_eq!((out, InverseQuadratic::new(&none).unwrap().of(&[2.0])), ([3.0], 0.0));
+}

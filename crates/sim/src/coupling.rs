@@ -17,6 +17,8 @@
 //!
 //! Only positions may be heard: of a velocity that is heard φ would need the derivative.
 
+use forwardstep_core::Scalar;
+
 /// φ, in the units of the axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Coupling {
@@ -60,8 +62,8 @@ impl Coupling {
     pub fn value(self, v: f64) -> f64 {
         match self {
             Coupling::Linear => v,
-            // Unlike f64::clamp on a bad limit, this never panics.
-            Coupling::Saturated { limit } => v.min(limit).max(-limit),
+            // Not-a-number stays, so that a delay that is not what its author says does not look like one more value.
+            Coupling::Saturated { limit } => v.saturate(limit),
             Coupling::Tanh { scale } => scale * libm::tanh(v / scale),
             Coupling::Rational { scale } => v / (1.0 + v.abs() / scale),
         }
@@ -86,6 +88,7 @@ mod tests {
             Coupling::Rational { scale: 0.3 },
         ];
         for coupling in all {
+            assert!(coupling.taken(1.0, f64::NAN).is_nan(), "{coupling:?}: what is no number is no message");
             let mut before = 0.0;
             for k in 1..2000 {
                 let v = 0.01 * f64::from(k);

@@ -15,7 +15,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
-use forwardstep_sim::{Adaptive, Method, Outcome, Setup, Signal, simulate, simulate_samples};
+use forwardstep_sim::{Adaptive, AgentSetup, Method, Outcome, Setup, Signal, simulate, simulate_samples};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;
@@ -54,6 +54,28 @@ fn thm8_thm9_remark12_everybody_follows_and_no_sign_chatters() {
         assert!(error < near, "{design:?}: {error}");
         assert!(outcome.statistics.sign_residual.unwrap() < 1e-12);
         assert!(peak(&outcome, Signal::Selection, 0.0) <= 1.0);
+    }
+}
+
+#[test]
+fn regress_signs_are_set_by_the_graph_that_is_in_force() {
+    for design in DESIGNS {
+        // Two that are alike hear the leader, then nobody but each other, where neither asks for anything.
+        let mut problem = masses(design);
+        problem.agents[1] = AgentSetup { name: "twin".into(), ..problem.agents[0].clone() };
+        let edge = |from, to| Edge { from, to, weight: 1.0.into(), delay: 0 };
+        let phase = |edges| Phase { dwell_s: 0.2, edges };
+        let [led, alone] = [[edge(3, 0), edge(3, 1), edge(1, 2)], [edge(1, 0), edge(0, 1), edge(1, 2)]].map(Vec::from);
+        problem.network.schedule = Schedule::periodic(vec![phase(led), phase(alone)]);
+        assert!(problem.change_reference(|following: &mut Following| {
+            (following.choice, following.period_s) = (Choice::Implicit, 0.02);
+        }));
+        (problem.time.end_s, problem.time.record_every_s) = (0.4, 0.005);
+        let outcome = run(&problem);
+        let row = |t: f64| outcome.recording.t_s.iter().position(|own| (own - t).abs() < 1e-9).unwrap();
+        // A twin is pulled towards the leader until the graph changes, and not for a period more.
+        let pulled = |t| column(&outcome, 0, Signal::Selection, 0)[row(t)].abs();
+        assert!(pulled(0.195) > 1e-3 && pulled(0.205) < 1e-9, "{design:?}: {} {}", pulled(0.195), pulled(0.205));
     }
 }
 

@@ -7,13 +7,15 @@ use forwardstep_core::expression::Expression;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::robot::tree::{JointKind, LinkJoint, LinkSpec, Placement, Tree, inertia_about_frame};
 use forwardstep_core::robot::{Drives, Friction, PlanarArm, PlanarLinks, PlanarTip, PointMass, SMOOTHING_LOSS};
-use forwardstep_sim::delay::Delay;
+use forwardstep_sim::delay::{Delay, PiecewiseConstant};
 use forwardstep_sim::drives::{JointDrives, JointFriction};
+use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
+use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Method, Network, Outcome, RobotSetup, Setup, Signal, TaskSpaceLaw,
-    TipSetup, run,
+    Adaptive, AgentSetup, Axis, AxisUnit, Ending, Known, Method, Network, Outcome, RobotSetup, Setup, Signal,
+    TaskSpaceLaw, TipSetup, run,
 };
 
 const MASS_KG: f64 = 2.0;
@@ -193,6 +195,55 @@ fn friction_answers_at_once_to_a_push_that_begins_within_a_period() {
     let want = (5.0 - FRICTION_N) / INERTIA_KG * (1.0 - 0.503);
     let found = outcome.recording.last(0, Signal::Velocity, 0);
     assert!((found - want).abs() < 1e-6, "{found}, not {want}");
+}
+
+/// A block that sticks and hears another one that is far away from 0.503 s on; of `late` messages only that it was near is heard until then.
+/// Both know their masses.
+fn called(period_s: f64, late: bool) -> Setup {
+    let friction = JointFriction { coulomb: vec![FRICTION_N], width: vec![0.05], dry_s: Some(period_s) };
+    let rubs = JointDrives { friction: Some(friction), ..JointDrives::default() };
+    let sticks = RobotSetup::point_mass(1, INERTIA_KG).with_drives(&rubs).unwrap();
+    let agent = |name: &str, robot| AgentSetup::new(name, robot, Known::gain(1.0)).roots([1.0]);
+    let far = agent("far", RobotSetup::point_mass(1, 1.0));
+    let far = if late { far.at(&[0.0]).moving(&[20.0]) } else { far.at(&[6.0]) };
+    let agents = [agent("block", sticks).at(&[0.0]), far];
+    let edges = vec![Edge { from: 1, to: 0, weight: 1.0.into(), delay: 0 }];
+    let network = match late {
+        true => Network {
+            schedule: Schedule::fixed(edges),
+            delays: vec![Delay::new(PiecewiseConstant {
+                times_s: vec![0.0, 0.503],
+                values_s: vec![0.6, 0.0],
+                period_s: None,
+            })],
+            ..Network::silent(2)
+        },
+        false => Network {
+            schedule: Schedule::periodic(vec![Phase { dwell_s: 0.503, edges: vec![] }, Phase { dwell_s: 9.0, edges }]),
+            delays: vec![Delay::constant(0.0)],
+            ..Network::silent(2)
+        },
+    };
+    let mut setup = Setup::consensus(agents, network, 0.51);
+    setup.solver.method = Method::Adaptive { rtol: 1e-9, atol: 1e-12 };
+    setup
+}
+
+#[test]
+fn regress_friction_answers_at_once_to_what_is_heard_first_within_a_period() {
+    let fastest = |setup: &Setup| run(setup).unwrap().recording.last(0, Signal::Velocity, 0);
+    for late in [false, true] {
+        // What was held must not stay until 0.51 s.
+        let [coarse, fine] = [1e-2, 1e-4].map(|period_s| fastest(&called(period_s, late)));
+        assert!(fine > 5e-3 && (coarse - fine).abs() < 0.05 * fine, "{late}: {coarse}, not {fine}");
+    }
+}
+
+#[test]
+fn regress_periods_of_friction_that_no_run_comes_to_the_end_of_are_refused() {
+    let setup = block(Some(1e-30), Function::Constant(0.0), 1.2, 2.0);
+    let said = run(&setup).unwrap_err().to_string();
+    assert!(said.contains("period_s") && said.contains("settings of dry friction"), "{said}");
 }
 
 #[test]

@@ -113,3 +113,32 @@ fn an_axis_beyond_its_range_ends_the_run_where_limits_are_enforced() {
         assert_eq!(ending(range, false).ending, Ending::Completed);
     }
 }
+
+#[test]
+fn regress_limits_that_cannot_be_enforced_are_refused() {
+    let refused = |setup: &Setup| simulate(setup, &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
+    for value in [0.0, -1.0, f64::NAN] {
+        let weak = alone(vec![arm(0, Some([5.0, value]), false)]);
+        for setup in [weak.clone(), weak.sampled(100.0)] {
+            let said = refused(&setup);
+            assert!(
+                said.contains(&format!("the effort limit of `elbow` is {value}, but it must be positive")),
+                "{said}"
+            );
+        }
+    }
+    // No torque but zero lies within 0.2 in steps of 0.5.
+    let mut coarse = alone(vec![arm(0, None, false)]).sampled(100.0);
+    let actuators = &mut coarse.control.as_mut().unwrap().actuators;
+    (actuators.torque_limit, actuators.torque_quantum) = (Some(vec![9.0, 0.2]), 0.5);
+    let said = refused(&coarse);
+    assert!(said.contains("axis 1 has the torque limit 0.2, which is below the step of the torques, 0.5"), "{said}");
+}
+
+#[test]
+fn regress_a_robot_without_axes_is_refused() {
+    let robot = RobotSetup::point_mass(0, 1.0);
+    let agents = vec![AgentSetup::new("nobody", robot, Known::gain(1.0)).roots([1.0, 2.0])];
+    let said = simulate(&alone(agents), &mut |_| ControlFlow::Continue(())).unwrap_err().to_string();
+    assert!(said.contains("`nobody` has no axes"), "{said}");
+}

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::common::{consensus_of_masses, sampled, switching};
 use forwardstep_core::Scalar;
+use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{
     Arrivals, Basis, Delay, DelayFault, DelayFunction, DelayPiece, Known, Loss, PacketLink, SawTooth, Sinusoid,
 };
@@ -41,7 +42,7 @@ impl DelayFunction for Teeth {
 
     fn piece(&self, index: u64) -> DelayPiece {
         let SawTooth { period_s, offset_s, .. } = self.0;
-        let start_s = |index: u64| ((offset_s / period_s).floor() + index as f64) * period_s - offset_s;
+        let start_s = |index: u64| index as f64 * period_s - offset_s.rem_euclid(period_s);
         DelayPiece::new(index, start_s(index), start_s(index + 1))
     }
 
@@ -324,6 +325,25 @@ fn a_value_that_no_probe_meets_breaks_the_run_down() {
         let Ending::BrokeDown(breakdown) = outcome.ending else { panic!("{:?}", outcome.ending) };
         let BreakdownCause::Delay { delay: 0, at_s } = breakdown.cause else { panic!("{breakdown:?}") };
         assert!(at_s < 2e-3, "{at_s}");
+    }
+}
+
+#[test]
+fn regress_no_coupling_hides_a_delay_that_is_no_number() {
+    let spike = |t: f64| if t > 1e-7 && t < 2e-3 { f64::NAN } else { 0.2 };
+    let couplings = [
+        Coupling::Linear,
+        Coupling::Saturated { limit: 0.5 },
+        Coupling::Tanh { scale: 0.5 },
+        Coupling::Rational { scale: 0.5 },
+    ];
+    for coupling in couplings {
+        let mut setup = with(Delay::new(Says { value: spike, ..honest() }));
+        setup.network.coupling = coupling;
+        for setup in [setup.clone(), sampled(setup, 1000.0)] {
+            let Ending::BrokeDown(breakdown) = run(&setup).unwrap().ending else { panic!("{coupling:?}") };
+            assert!(matches!(breakdown.cause, BreakdownCause::Delay { delay: 0, .. }), "{coupling:?}: {breakdown:?}");
+        }
     }
 }
 

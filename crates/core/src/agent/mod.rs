@@ -187,6 +187,10 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     ) -> Result<Self, LengthError> {
         let (m, p) = (robot.dof(), robot.parameter_count());
         LengthError::check("agents of the reference", 1, reference.agents())?;
+        if m == 0 {
+            // There is nothing to step.
+            return Err(LengthError { what: "the axes of the robot", need: 1, got: 0 });
+        }
         LengthError::check("gain K", m, law.damping.size())?;
         if let Some(gamma) = &law.adaptation {
             LengthError::check("gain Γ", p, gamma.size())?;

@@ -247,7 +247,7 @@ impl<T: Terms> Plant for Chain<T> {
         LengthError::check("rate", k, d_state.len())?;
         LengthError::check("input", 1, input.len())?;
         check_external(1, external)?;
-        LengthError::check("theta", self.theta.len(), work.phi.len())?;
+        LengthError::check("theta", work.phi.len(), self.theta.len())?;
         let (mut top, psi) = self.terms.terms(&mut work.terms, state, &mut work.phi)?;
         for (phi, theta) in work.phi.iter().zip(&self.theta) {
             top += phi * theta;

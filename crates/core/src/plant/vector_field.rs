@@ -5,6 +5,7 @@ use core::fmt;
 
 use super::{Plant, check_external, total};
 use crate::LengthError;
+use crate::scalar::Scalar;
 use crate::signal::Block;
 
 /// ẋ = f(x, u) + w, all of whose state can be measured. `rate` takes x, u and ẋ, in this order, each as long as its blocks say;
@@ -90,8 +91,7 @@ impl<F: Fn(&[f64], &[f64], &mut [f64]) + Send + Sync + 'static> Plant for Vector
 
     fn limit(&self, _: &[f64], input: &mut [f64]) {
         for (input, limit) in input.iter_mut().zip(&self.limits) {
-            // Not `clamp`, which panics where a limit is not a number.
-            *input = input.max(-limit).min(*limit);
+            *input = input.saturate(*limit);
         }
     }
 
@@ -128,6 +128,9 @@ mod tests {
         assert_eq!(input, [3.0, -3.0, 3.0]);
         plant.limited([1.0, 2.0]).limit(&[0.0], &mut input);
         assert_eq!(input, [1.0, -2.0, 3.0]);
+        input[0] = f64::NAN;
+        plant.limit(&[0.0], &mut input);
+        assert!(input[0].is_nan(), "what a law cannot say is no command: {input:?}");
     }
 
     #[test]

@@ -91,7 +91,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
             "a single number stands for all axes".to_owned()
         }
         SetupError::TorqueLimitCount { .. } => {
-            "leave it out: this robot has another number of torques than of axes".to_owned()
+            "leave it out: what this robot does is not asked of it as torques of its axes".to_owned()
         }
         SetupError::TargetDerivatives { known, .. } if *known < MOST_DERIVATIVES => format!(
             "give at most {known} roots, or the target as a formula: a curve through points has {known} derivatives, a formula as many \

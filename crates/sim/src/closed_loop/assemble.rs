@@ -148,16 +148,11 @@ impl<'a> ClosedLoop<'a> {
                 columns: guide,
             });
         }
-        let mut heard = closed_loop.start_references(setup, told.channels() * axes)?;
-        if told.held.is_some() {
-            // What is told is a part of what has just been started.
-            heard = closed_loop.heard_at_start(setup, told.channels() * axes);
-        }
+        closed_loop.start_references(setup, told.channels() * axes)?;
         if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
             let places = closed_loop.places();
             let states = closed_loop.start.len();
-            closed_loop.slider =
-                Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, heard.clone(), states));
+            closed_loop.slider = Some(Slider::new(&setup.network, sliding, following.period_s, axes, places, states));
         }
         if let Some(control) = &setup.control {
             for block in &mut closed_loop.blocks {
@@ -169,7 +164,7 @@ impl<'a> ClosedLoop<'a> {
             closed_loop.sampling = Some(Sampling::new(setup, control, ports.clone(), entries, start));
         }
         closed_loop.pushes = Pushes::new(setup, &closed_loop.ports, &closed_loop.blocks);
-        closed_loop.frictions = Frictions::new(setup, &closed_loop.ports, &closed_loop.blocks, heard);
+        closed_loop.frictions = Frictions::new(setup, &closed_loop.ports, &closed_loop.blocks);
         closed_loop.kink_s = closed_loop.next_kink_s(0.0);
         let longest = closed_loop.blocks.iter().map(|block| block.columns.signals().len()).max();
         closed_loop.row = Vec::with_capacity(longest.unwrap_or(0) + external + axes);
@@ -178,7 +173,7 @@ impl<'a> ClosedLoop<'a> {
 
     /// From the wanted z(0), ż(0), … to reference states, with what everybody hears at t = 0: the initial messages.
     /// Of every message as many entries are heard as flow.
-    fn start_references(&mut self, setup: &Setup, flowing: usize) -> Result<Heard, SetupError> {
+    fn start_references(&mut self, setup: &Setup, flowing: usize) -> Result<(), SetupError> {
         let Heard { degree, sums } = self.heard_at_start(setup, flowing);
         for block in &mut self.blocks {
             let (degree, sums) = (&degree[block.degree.clone()], &sums[block.sums.clone()]);
@@ -187,7 +182,7 @@ impl<'a> ClosedLoop<'a> {
                 .start(&setup.agents, &mut self.start[block.state.clone()], degree, sums)
                 .map_err(|error| SetupError::Length { agent: setup.agents[0].name.clone(), error })?;
         }
-        Ok(Heard { degree, sums })
+        Ok(())
     }
 
     /// What everybody hears if the messages are those of the start.

@@ -329,8 +329,12 @@ pub(super) fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<V
         return Ok(None);
     }
     let limit = |axis: &Axis| {
-        let (agent, axis_name) = (own.name.clone(), axis.name.clone());
-        axis.effort_limit.ok_or(SetupError::NoEffortLimit { agent, axis: axis_name })
+        let (agent, name) = (own.name.clone(), axis.name.clone());
+        match axis.effort_limit {
+            None => Err(SetupError::NoEffortLimit { agent, axis: name }),
+            Some(value) if value > 0.0 => Ok(value),
+            Some(value) => Err(SetupError::EffortLimit { agent, axis: name, value }),
+        }
     };
     let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
     LengthError::check("the effort limits", torques, limits.len())

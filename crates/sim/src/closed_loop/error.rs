@@ -16,6 +16,24 @@ use crate::quantity::{Name, Path, QuantityError, about, entries, number};
 use crate::setup::Exchange;
 use crate::trajectory::TrajectoryError;
 
+/// What limits of actuators are of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limited {
+    /// Torques.
+    Torque,
+    /// How fast torques change.
+    Rate,
+}
+
+impl Limited {
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Limited::Torque => "the limit of torques",
+            Limited::Rate => "the limit of torque rates",
+        }
+    }
+}
+
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SetupError {
@@ -57,6 +75,12 @@ pub enum SetupError {
         first: String,
         /// The first agent's number of axes.
         first_axes: usize,
+    },
+    /// A robot that cannot move.
+    #[error("agent `{agent}` has no axes, so that there is nothing to control")]
+    NoAxes {
+        /// The agent.
+        agent: String,
     },
     /// A vector of one agent has the wrong length.
     #[error("agent `{agent}`: {error}")]
@@ -124,13 +148,13 @@ pub enum SetupError {
         /// What its law is called.
         law: &'static str,
     },
-    /// Limits for axes where the robot has another number of torques.
+    /// Limits of actuators where the robot has another number of torques.
     #[error("agent `{agent}`: {error}")]
     TorqueLimitCount {
         /// The agent.
         agent: String,
-        /// Limits of rates, not of torques.
-        of_rates: bool,
+        /// What they limit.
+        of: Limited,
         /// How many there are, and how many there must be.
         error: LengthError,
     },
@@ -401,6 +425,33 @@ pub enum SetupError {
     BoundsOfKnown {
         /// The agent.
         agent: String,
+    },
+    /// An effort limit that cannot be enforced.
+    #[error(
+        "agent `{agent}`: the effort limit of `{axis}` is {value}, but it must be positive where limits are enforced"
+    )]
+    EffortLimit {
+        /// The agent.
+        agent: String,
+        /// Its axis.
+        axis: String,
+        /// The limit, N m or N.
+        value: f64,
+    },
+    /// A torque limit that no step of the torques lies within.
+    #[error(
+        "agent `{agent}`: axis {axis} has the torque limit {limit}, which is below the step of the torques, {quantum}: no torque but zero can \
+         be given; raise the limit, or make the step smaller"
+    )]
+    LimitBelowQuantum {
+        /// The agent.
+        agent: String,
+        /// The axis, from zero.
+        axis: usize,
+        /// The limit, N m or N.
+        limit: f64,
+        /// The step, N m or N.
+        quantum: f64,
     },
     /// A torque limit of one agent.
     #[error("agent `{agent}`: {error}")]

@@ -3,7 +3,7 @@
 use forwardstep_core::controller::ChainError;
 use forwardstep_core::reference::BacksteppingError;
 
-use super::error::SetupError;
+use super::error::{Limited, SetupError};
 use crate::quantity::Path;
 use crate::reference::{ReferenceDynamics, ReferenceFamily};
 use crate::setup::{AgentSetup, RECORD_EVERY_S, Setup, Solver};
@@ -57,8 +57,10 @@ impl SetupError {
             SetupError::Trajectory { agent, .. } | SetupError::NoOffsets { agent, .. } => of(agent).key("target"),
             SetupError::UnitsDiffer { agent, .. }
             | SetupError::AxesDiffer { agent, .. }
+            | SetupError::NoAxes { agent }
             | SetupError::Spacecraft { agent, .. }
             | SetupError::NoEffortLimit { agent, .. }
+            | SetupError::EffortLimit { agent, .. }
             | SetupError::Chain { agent, error: ChainError::Expression(_) } => of(agent).key("robot"),
             SetupError::Chain {
                 agent,
@@ -77,10 +79,10 @@ impl SetupError {
             | SetupError::TipVelocity { agent }
             | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
             SetupError::Push { agent, .. } => of(agent),
-            SetupError::Limiter { .. } | SetupError::TorqueLimitCount { of_rates: false, .. } => {
-                "control.torque_limit".into()
-            }
-            SetupError::TorqueLimitCount { of_rates: true, .. } => "control.torque_rate_limit_per_s".into(),
+            SetupError::Limiter { .. }
+            | SetupError::LimitBelowQuantum { .. }
+            | SetupError::TorqueLimitCount { of: Limited::Torque, .. } => "control.torque_limit".into(),
+            SetupError::TorqueLimitCount { of: Limited::Rate, .. } => "control.torque_rate_limit_per_s".into(),
             SetupError::VelocityFilter(_) => "control.velocity".into(),
             SetupError::VelocityUnused { quantity, .. } => Path::from("control").key(quantity.key()),
             // What was not asked for is not what is wrong.

@@ -8,7 +8,7 @@ use forwardstep_core::robot::{Drives, Stick};
 use super::assemble::Block;
 use super::pushes::Pushes;
 use crate::agents::Evaluator;
-use crate::engine::{EventOutcome, Heard, Port};
+use crate::engine::{Heard, Port};
 use crate::recording::Signal;
 use crate::setup::{AgentSetup, Setup};
 
@@ -21,8 +21,6 @@ pub(super) struct Frictions {
     period_s: f64,
     /// How many regular instants have passed.
     set: u64,
-    /// What was heard when the right-hand side was last evaluated: at the end of a step, which is the instant at hand.
-    heard: Heard,
     rates: Vec<f64>,
 }
 
@@ -55,8 +53,8 @@ pub(super) fn is_acted_on(agent: &AgentSetup) -> bool {
 }
 
 impl Frictions {
-    /// `ports` says where the agents' numbers stand in the `blocks`, and `heard` what is heard at t = 0; `None` when nothing rubs dryly.
-    pub(super) fn new(setup: &Setup, ports: &[Port], blocks: &[Block], heard: Heard) -> Option<Self> {
+    /// `ports` says where the agents' numbers stand in the `blocks`; `None` when nothing rubs dryly.
+    pub(super) fn new(setup: &Setup, ports: &[Port], blocks: &[Block]) -> Option<Self> {
         let mut each = Vec::new();
         let mut period_s = f64::INFINITY;
         for (index, (agent, port)) in setup.agents.iter().zip(ports).enumerate() {
@@ -91,13 +89,7 @@ impl Frictions {
             });
         }
         let states = blocks.last().map_or(0, |block| block.state.end);
-        (!each.is_empty()).then(|| Frictions { each, period_s, set: 0, heard, rates: vec![0.0; states] })
-    }
-
-    /// Takes note of what is heard.
-    pub(super) fn hear(&mut self, heard: &Heard) {
-        self.heard.degree.copy_from_slice(&heard.degree);
-        self.heard.sums.copy_from_slice(&heard.sums);
+        (!each.is_empty()).then(|| Frictions { each, period_s, set: 0, rates: vec![0.0; states] })
     }
 
     /// When friction is set next, s.
@@ -105,22 +97,10 @@ impl Frictions {
         self.set as f64 * self.period_s
     }
 
-    /// Sets friction at `now_s` in the state `x`, if it is time or something `happened`.
-    pub(super) fn happen(
-        &mut self,
-        now_s: f64,
-        happened: EventOutcome,
-        pushes: &mut Pushes,
-        blocks: &mut [Block],
-        x: &[f64],
-    ) -> EventOutcome {
-        let due = self.next_s() <= now_s;
-        if !due && happened == EventOutcome::Nothing {
-            return happened;
-        }
-        while self.next_s() <= now_s + ROUNDING * self.period_s {
-            self.set += 1;
-        }
+    /// Sets friction at `now_s` in the state `x`, by what is `heard` then.
+    pub(super) fn set(&mut self, now_s: f64, heard: &Heard, pushes: &mut Pushes, blocks: &mut [Block], x: &[f64]) {
+        // The regular instants that this one is past or at.
+        self.set = self.set.max((now_s / self.period_s + ROUNDING) as u64 + 1);
         let h_s = self.next_s() - now_s;
         pushes.evaluate(now_s, x, blocks);
         // Agents that follow one another mostly share a block.
@@ -129,7 +109,7 @@ impl Frictions {
             let Rubbed { agent, block, robot, theta, forces, stick, velocities, q, dq, ddq } = rubbed;
             let Some(own) = blocks.get_mut(*block) else { continue };
             if evaluated.replace(*block) != Some(*block) {
-                let (inputs, rates) = (own.inputs(&self.heard, pushes.external()), &mut self.rates[own.state.clone()]);
+                let (inputs, rates) = (own.inputs(heard, pushes.external()), &mut self.rates[own.state.clone()]);
                 own.columns.rates(now_s, &x[own.state.clone()], inputs, rates);
             }
             let Block { columns, state, .. } = own;
@@ -141,6 +121,5 @@ impl Frictions {
             debug_assert_eq!(checked, Ok(()), "lengths are fixed when the closed loop is built");
             pushes.rub(*agent, stick.torque());
         }
-        happened.max(EventOutcome::Sampled)
     }
 }

@@ -52,7 +52,7 @@ mod velocity_quantity;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
-pub use error::SetupError;
+pub use error::{Limited, SetupError};
 pub use injected::{Energy, Powers};
 pub(crate) use members::tracking_law;
 pub use probe::{probe_balance, singular_start};

@@ -5,7 +5,7 @@ use forwardstep_core::sampled::{EncoderFilter, Limits, Recipe, RecipeError, Samp
 
 use super::assemble::ClosedLoop;
 use super::assembly::effort_limits;
-use super::error::SetupError;
+use super::error::{Limited, SetupError};
 use crate::setup::{AgentSetup, Control, Failures, Setup, VelocitySensor};
 
 /// The sampled controller of one agent as plain data: what the simulator steps under [`Setup::control`], for a program of
@@ -65,24 +65,30 @@ pub(super) fn used(mut recipe: Recipe, setup: &Setup, agent: usize, torques: usi
 /// What the actuators can do, and what the robot's axes can bear where that is enforced.
 fn limits(own: &AgentSetup, control: Option<&Control>, torques: usize) -> Result<Option<Limits>, SetupError> {
     let actuators = control.map(|control| &control.actuators);
-    let given = |values: Option<&Vec<f64>>, of_rates| {
-        let what = if of_rates { "the limit of torque rates" } else { "the limit of torques" };
+    let agent = || own.name.clone();
+    let given = |values: Option<&Vec<f64>>, of: Limited| {
         let values = values.cloned().unwrap_or_else(|| vec![f64::INFINITY; torques]);
-        LengthError::check(what, torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
-            agent: own.name.clone(),
-            of_rates,
+        LengthError::check(of.words(), torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
+            agent: agent(),
+            of,
             error,
         })?;
         Ok::<_, SetupError>(values)
     };
-    let mut torque = given(actuators.and_then(|actuators| actuators.torque_limit.as_ref()), false)?;
-    let rate = given(actuators.and_then(|actuators| actuators.torque_rate_limit.as_ref()), true)?;
+    let mut torque = given(actuators.and_then(|actuators| actuators.torque_limit.as_ref()), Limited::Torque)?;
+    let rate = given(actuators.and_then(|actuators| actuators.torque_rate_limit.as_ref()), Limited::Rate)?;
     for (limit, effort) in torque.iter_mut().zip(effort_limits(own, torques)?.iter().flatten()) {
         *limit = limit.min(*effort);
     }
     // A rounded torque must not exceed its limit either.
     if let Some(actuators) = actuators {
-        torque.iter_mut().for_each(|limit| *limit = actuators.largest_within(*limit));
+        for (axis, limit) in torque.iter_mut().enumerate() {
+            let (given, quantum) = (*limit, actuators.torque_quantum);
+            *limit = actuators.largest_within(given);
+            if *limit == 0.0 && given > 0.0 {
+                return Err(SetupError::LimitBelowQuantum { agent: agent(), axis, limit: given, quantum });
+            }
+        }
     }
     let unlimited = torque.iter().chain(&rate).all(|limit| limit.is_infinite());
     Ok((!unlimited).then_some(Limits { torque, rate }))

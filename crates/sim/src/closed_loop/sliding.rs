@@ -42,8 +42,6 @@ pub(crate) struct Slider<'a> {
     links: Vec<Link>,
     /// How many times the signs were set.
     set: u64,
-    /// What was heard when the right-hand side was last evaluated: at the end of a step, which is the instant at hand.
-    heard: Heard,
     own: Vec<f64>,
     sums: Vec<f64>,
     e: Vec<f64>,
@@ -60,6 +58,9 @@ pub(super) struct Place {
     pub(super) degree: usize,
 }
 
+/// What is heard, and what acts from outside.
+type Outside<'a> = (&'a Heard, Option<&'a [f64]>);
+
 /// An edge in force.
 #[derive(Clone, Copy, Debug)]
 struct Link {
@@ -72,14 +73,13 @@ struct Link {
 }
 
 impl<'a> Slider<'a> {
-    /// `heard` is what is heard at t = 0, and `states` the numbers of state.
+    /// `states` is how many numbers of state there are.
     pub(super) fn new(
         network: &'a Network,
         sliding: Sliding,
         period_s: f64,
         axes: usize,
         places: Vec<Place>,
-        heard: Heard,
         states: usize,
     ) -> Self {
         let mut segments = network.schedule.segments();
@@ -95,7 +95,6 @@ impl<'a> Slider<'a> {
             segment,
             links: Vec::new(),
             set: 0,
-            heard,
             own: columns(),
             sums: columns(),
             e: columns(),
@@ -134,22 +133,17 @@ impl<'a> Slider<'a> {
         (self.sliding.choice == Choice::Implicit).then_some(self.residual)
     }
 
-    /// Takes note of what is heard.
-    pub(super) fn hear(&mut self, heard: &Heard) {
-        self.heard.degree.copy_from_slice(&heard.degree);
-        self.heard.sums.copy_from_slice(&heard.sums);
-    }
-
     /// The next event, s.
     pub(super) fn next_s(&self) -> f64 {
         let set_s = if self.is_layer().is_some() { f64::INFINITY } else { self.set as f64 * self.period_s };
         set_s.min(self.segment.end_s)
     }
 
-    /// Everything that is due until `until_s`: a new graph, then new values of all signs.
+    /// Everything that is due until `until_s`: a new graph, then new values of all signs, by what is heard over it.
     pub(super) fn happen(
         &mut self,
         until_s: f64,
+        heard: &Heard,
         external: Option<&[f64]>,
         blocks: &mut [Block],
         x: &mut [f64],
@@ -168,14 +162,14 @@ impl<'a> Slider<'a> {
         self.set += 1;
         if self.sliding.told() > 0 {
             for block in blocks.iter_mut() {
-                let (inputs, rates) = (block.inputs(&self.heard, external), &mut self.rates[block.state.clone()]);
+                let (inputs, rates) = (block.inputs(heard, external), &mut self.rates[block.state.clone()]);
                 block.columns.rates(now_s, &x[block.state.clone()], inputs, rates);
             }
         }
         self.weigh(now_s);
-        self.take_arguments(now_s, external, blocks, x, None);
+        self.take_arguments(now_s, (heard, external), blocks, x, None);
         match self.sliding.choice {
-            Choice::Implicit => self.solve(),
+            Choice::Implicit => self.solve(&heard.degree),
             _ => {
                 for (selection, e) in self.selection.iter_mut().zip(&self.e) {
                     *selection = saturated(*e, 0.0);
@@ -194,7 +188,7 @@ impl<'a> Slider<'a> {
     pub(super) fn add_sign_terms(
         &mut self,
         t_s: f64,
-        external: Option<&[f64]>,
+        outside: Outside<'_>,
         blocks: &mut [Block],
         x: &[f64],
         dx: &mut [f64],
@@ -202,7 +196,7 @@ impl<'a> Slider<'a> {
         // A sign taken of what is heard alone was dealt with before the torque.
         let Some(width) = self.is_layer().filter(|_| self.sliding.told() > 0) else { return };
         self.weigh(t_s);
-        self.take_arguments(t_s, external, blocks, x, Some(dx));
+        self.take_arguments(t_s, outside, blocks, x, Some(dx));
         for (selection, e) in self.selection.iter_mut().zip(&self.e) {
             *selection = saturated(*e, width);
         }
@@ -212,33 +206,17 @@ impl<'a> Slider<'a> {
         }
     }
 
-    /// The same at an instant inside a step: what is heard there is not kept where signs are set at its end.
-    pub(super) fn add_sign_terms_inside(
-        &mut self,
-        t_s: f64,
-        heard: &Heard,
-        external: Option<&[f64]>,
-        blocks: &mut [Block],
-        (x, dx): (&[f64], &mut [f64]),
-    ) {
-        if self.is_layer().is_some() {
-            self.hear(heard);
-            self.add_sign_terms(t_s, external, blocks, x, dx);
-        }
-    }
-
     /// Has the signs ready to be recorded where they are functions of the instant and of what was computed.
     pub(super) fn look(&mut self, t_s: f64, heard: &Heard, external: Option<&[f64]>, blocks: &mut [Block], x: &[f64]) {
         if self.is_layer().is_none() || self.sliding.told() == 0 {
             return;
         }
-        self.hear(heard);
         let mut rates = std::mem::take(&mut self.rates);
         for block in blocks.iter_mut() {
-            let (inputs, rates) = (block.inputs(&self.heard, external), &mut rates[block.state.clone()]);
+            let (inputs, rates) = (block.inputs(heard, external), &mut rates[block.state.clone()]);
             block.columns.rates(t_s, &x[block.state.clone()], inputs, rates);
         }
-        self.add_sign_terms(t_s, external, blocks, x, &mut rates);
+        self.add_sign_terms(t_s, (heard, external), blocks, x, &mut rates);
         self.rates = rates;
     }
 
@@ -253,7 +231,7 @@ impl<'a> Slider<'a> {
     fn take_arguments(
         &mut self,
         t_s: f64,
-        external: Option<&[f64]>,
+        (heard, external): Outside<'_>,
         blocks: &mut [Block],
         x: &[f64],
         dx: Option<&[f64]>,
@@ -274,20 +252,20 @@ impl<'a> Slider<'a> {
         for block in blocks {
             let range = block.columns_range(self.axes);
             let (own, sums) = (&self.own[range.clone()], &self.sums[range.clone()]);
-            let inputs = block.inputs(&self.heard, external);
+            let inputs = block.inputs(heard, external);
             block.columns.argument(&x[block.state.clone()], inputs, [own, sums], &mut self.e[range]);
         }
     }
 
-    /// ς ∈ Sgn(e − hγ L ς).
-    fn solve(&mut self) {
+    /// ς ∈ Sgn(e − hγ L ς), with the sums of the weights of all that everybody hears.
+    fn solve(&mut self, degree: &[f64]) {
         let step = self.period_s * self.sliding.gamma;
         let mut left = 0.0_f64;
         for _ in 0..MOST_SWEEPS {
             let (mut change, mut rest) = (0.0_f64, 0.0_f64);
             for receiver in self.links.chunk_by(|a, b| a.to.degree == b.to.degree) {
                 let to = receiver[0].to;
-                let width = step * self.heard.degree[to.degree];
+                let width = step * degree[to.degree];
                 for c in 0..self.axes {
                     let at = to.first + c * to.stride;
                     let near = receiver.iter().filter(|link| !link.delayed);
@@ -333,12 +311,11 @@ mod tests {
             Sliding { derived: Derived::Nothing, alpha: 1.0, beta: 1.0, gamma: 3.0, choice: Choice::Implicit };
         let degree = vec![1.7, 2.0, 0.5, 0.0];
         let places = (0..4).map(|i| Place { first: i, stride: 4, degree: i }).collect();
-        let heard = Heard { degree: degree.clone(), sums: Vec::new() };
-        let mut slider = Slider::new(&network, sliding, 1e-3, 1, places, heard, 0);
+        let mut slider = Slider::new(&network, sliding, 1e-3, 1, places, 0);
         slider.weigh(0.0);
         for e in [[1e-4, -2e-4, 3e-5, 0.0], [0.5, 1e-3, -1e-3, 0.0], [-4e-3, 4e-3, 4e-3, 0.0], [0.0; 4]] {
             slider.e.copy_from_slice(&e);
-            slider.solve();
+            slider.solve(&degree);
             let selection = &slider.selection;
             for i in 0..3 {
                 let told: f64 = edges

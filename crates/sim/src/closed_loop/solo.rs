@@ -14,11 +14,11 @@
 
 mod block;
 
-use forwardstep_core::LengthError;
 use forwardstep_core::agent::Inbox;
 use forwardstep_core::controller::{Balance, ControllerOutput, JetsBuffer};
 use forwardstep_core::plant::total;
 use forwardstep_core::signal::Block;
+use forwardstep_core::{LengthError, Scalar};
 
 use super::columns::Inputs;
 use super::injected::{Energy, Tracing};
@@ -185,7 +185,7 @@ impl Solo {
         asked.copy_from_slice(input);
         let (first, count) = self.layout.torque;
         for (torque, limit) in input[first..first + count].iter_mut().zip(self.effort_limits.iter().flatten()) {
-            *torque = torque.clamp(-limit, *limit);
+            *torque = torque.saturate(*limit);
         }
         self.pair.limit(state, input);
         Ok(())

@@ -4,12 +4,12 @@ use forwardstep_core::LengthError;
 
 use super::assembly::length;
 use super::error::SetupError;
-use super::frictions::is_acted_on;
+use super::frictions::{dry_friction, is_acted_on};
 use super::unused;
 use crate::engine::{Integrator, SampledChannel};
-use crate::quantity::{Path, each, finite, not_negative, positive};
+use crate::quantity::{MOST_EVENTS, Path, each, few, finite, not_negative, positive};
 use crate::reference::ReferenceInterface;
-use crate::setup::{Actuators, AgentSetup, AxisUnit, Control, Exchange, Setup};
+use crate::setup::{AgentSetup, AxisUnit, Exchange, Setup};
 use crate::system::{LawWords, PositionKind};
 
 /// Everything that does not need a robot's kernels.
@@ -26,7 +26,7 @@ pub fn validate(setup: &Setup) -> Result<(), SetupError> {
         return Err(SetupError::AgentCount { network: setup.network.agents, agents });
     }
     setup.solver.check()?;
-    setup.control.as_ref().map_or(Ok(()), |control| check_control(control, setup))?;
+    setup.control.as_ref().map_or(Ok(()), |control| control.check(setup.time.end_s))?;
     setup.reference.check(setup)?;
     check_memory(setup)?;
     let ReferenceInterface { exchanges, nonlinear_coupling, .. } = setup.reference.interface();
@@ -80,20 +80,6 @@ fn check_memory(setup: &Setup) -> Result<(), SetupError> {
     if need_bytes > budget_bytes { Err(SetupError::Memory { need_bytes, budget_bytes }) } else { Ok(()) }
 }
 
-fn check_control(control: &Control, setup: &Setup) -> Result<(), SetupError> {
-    control.check(setup.time.end_s)?;
-    let Some(first) = setup.agents.first() else { return Ok(()) };
-    let Actuators { torque_limit, torque_rate_limit, .. } = &control.actuators;
-    for (of_rates, what, limits) in
-        [(false, "the limit of torques", torque_limit), (true, "the limit of torque rates", torque_rate_limit)]
-    {
-        let axes = first.robot.axes.len();
-        LengthError::check(what, axes, limits.as_ref().map_or(axes, Vec::len))
-            .map_err(|error| SetupError::TorqueLimitCount { agent: first.name.clone(), of_rates, error })?;
-    }
-    Ok(())
-}
-
 fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
     let (first, agent) = (&setup.agents[0], &setup.agents[index]);
     let vectors = setup.reference_of(index).free_derivatives(agent.roots_per_s.len());
@@ -106,7 +92,14 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
             first_axes: axes,
         });
     }
+    if axes == 0 {
+        return Err(SetupError::NoAxes { agent: agent.name.clone() });
+    }
     let own = Path::from("agents").index(index);
+    if let Some((_, period_s)) = dry_friction(agent) {
+        let settings = ("settings of dry friction", setup.time.end_s / period_s, MOST_EVENTS);
+        few(own.clone().key("robot.friction.dry"), "period_s", period_s, settings)?;
+    }
     let vector = |key: &'static str, need: usize, values: &[f64]| {
         length(agent, own.clone().key(key), need, values.len())?;
         each(own.clone(), key, values, finite).map_err(SetupError::from)
@@ -115,7 +108,7 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
     let velocities = agent.robot.velocity_len();
     vector("start.velocity", velocities, &agent.start.dq)?;
     // How much more a state has is known where the plant is built.
-    vector("start.higher_states", agent.start.rest.len(), &agent.start.rest)?;
+    each(own.clone(), "start.higher_states", &agent.start.rest, finite)?;
     goes_together(setup, index)?;
     // The second state of a chain may be no velocity, but it has a z.
     let leads = if velocities == 0 { axes } else { velocities };
@@ -130,7 +123,7 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
     if starts.len() > vectors + further.len() {
         return Err(too_many(agent, vectors + further.len(), starts.len()));
     }
-    vector("robot.theta", agent.robot.theta.len(), &agent.robot.theta)?;
+    each(own.clone(), "robot.theta", &agent.robot.theta, finite)?;
     let design = own.clone().key("reference").key(setup.reference_of(index).words().key);
     each(design.clone(), "roots_per_s", &agent.roots_per_s.real, positive)?;
     // As if they stood behind the real ones.

@@ -253,8 +253,10 @@ impl<'a> Integrator<'a> {
             }
         }
         let until_s = merge_until(t);
-        if system.next_event_s() <= until_s {
-            match system.happen(until_s, &mut self.x0) {
+        if self.passed.jumped || system.next_event_s() <= until_s {
+            self.hear(t);
+            let network = if self.passed.jumped { EventOutcome::Jumped } else { EventOutcome::Nothing };
+            match system.happen(until_s, &mut self.x0, &self.heard, network) {
                 EventOutcome::Nothing => {}
                 EventOutcome::Sampled => self.stale = true,
                 EventOutcome::Jumped => {
@@ -273,10 +275,15 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn derivative_at_start(&mut self, system: &mut impl DelaySystem, t: f64) -> Result<(), Failure> {
+    /// Gathers what is heard at the start of the next step.
+    fn hear(&mut self, t: f64) {
         let offset = self.history.draft().0;
         self.hearing.look(&self.timeline, &self.history, t, (t, 1.0, offset));
         self.hearing.gather(&self.history, &self.x0, &mut self.heard);
+    }
+
+    fn derivative_at_start(&mut self, system: &mut impl DelaySystem, t: f64) -> Result<(), Failure> {
+        self.hear(t);
         system.rates(t, &self.x0, &self.heard, &mut self.k[0]);
         self.statistics.evaluations += 1;
         self.stale = false;

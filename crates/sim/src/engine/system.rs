@@ -17,9 +17,10 @@ pub(crate) trait DelaySystem {
         f64::INFINITY
     }
 
-    /// Lets everything happen that is due until `until_s`, a rounding error after the instant at hand; may change `x`.
-    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> EventOutcome {
-        let _ = (until_s, x);
+    /// Lets everything happen that is due until `until_s`, a rounding error after the instant at hand; may change `x`. `heard` is what is
+    /// heard then, over the links that are in force from now on, and `network` what the network did; the answer is what else happened.
+    fn happen(&mut self, until_s: f64, x: &mut [f64], heard: &Heard, network: EventOutcome) -> EventOutcome {
+        let _ = (until_s, x, heard, network);
         EventOutcome::Nothing
     }
 }

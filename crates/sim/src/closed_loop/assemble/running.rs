@@ -15,7 +15,7 @@ impl ClosedLoop<'_> {
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
         if let Some(slider) = &mut self.slider {
-            slider.add_sign_terms_inside(t_s, heard, self.pushes.external(), &mut self.blocks, (x, dx));
+            slider.add_sign_terms(t_s, (heard, self.pushes.external()), &mut self.blocks, x, dx);
         }
     }
 
@@ -71,12 +71,8 @@ impl DelaySystem for ClosedLoop<'_> {
             let inputs = block.inputs(heard, self.pushes.external());
             block.columns.rates(t_s, &x[block.state.clone()], inputs, &mut dx[block.state.clone()]);
         }
-        if let Some(frictions) = &mut self.frictions {
-            frictions.hear(heard);
-        }
         if let Some(slider) = &mut self.slider {
-            slider.hear(heard);
-            slider.add_sign_terms(t_s, self.pushes.external(), &mut self.blocks, x, dx);
+            slider.add_sign_terms(t_s, (heard, self.pushes.external()), &mut self.blocks, x, dx);
         }
         if let (Some(driven), Some(port)) = (&mut self.driven, self.leader) {
             driven.evaluated(t_s, &dx[port.state..]);
@@ -96,7 +92,7 @@ impl DelaySystem for ClosedLoop<'_> {
         sample_s.min(self.pushes.next_event_s()).min(self.kink_s).min(set_s).min(rubs_s)
     }
 
-    fn happen(&mut self, until_s: f64, x: &mut [f64]) -> EventOutcome {
+    fn happen(&mut self, until_s: f64, x: &mut [f64], heard: &Heard, network: EventOutcome) -> EventOutcome {
         let mut happened = self.pushes.happen(until_s);
         if self.kink_s <= until_s {
             for block in &mut self.blocks {
@@ -109,14 +105,18 @@ impl DelaySystem for ClosedLoop<'_> {
             if slider.next_s() <= until_s {
                 self.pushes.evaluate(until_s, x, &mut self.blocks);
             }
-            happened = happened.max(slider.happen(until_s, self.pushes.external(), &mut self.blocks, x));
+            happened = happened.max(slider.happen(until_s, heard, self.pushes.external(), &mut self.blocks, x));
         }
         if let Some(sampling) = &mut self.sampling {
             happened = happened.max(sampling.happen(until_s, &mut self.blocks, x));
         }
-        match &mut self.frictions {
-            Some(frictions) => frictions.happen(until_s, happened, &mut self.pushes, &mut self.blocks, x),
-            None => happened,
+        let heard = self.sampling.as_ref().map_or(heard, Sampling::heard);
+        if let Some(frictions) = &mut self.frictions
+            && (frictions.next_s() <= until_s || happened.max(network) > EventOutcome::Nothing)
+        {
+            frictions.set(until_s, heard, &mut self.pushes, &mut self.blocks, x);
+            happened = happened.max(EventOutcome::Sampled);
         }
+        happened
     }
 }
