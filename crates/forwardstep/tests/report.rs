@@ -153,7 +153,7 @@ fn what_was_predicted_stands_beside_what_was_observed() {
     assert!(summary["metrics"]["final_tracking_error"].as_f64().unwrap() > 1e-3);
     assert!(page.contains("what they do to the course is not predicted"));
     let rate = &summary["prediction"]["rate"]["period"];
-    assert!(rate["factor"].as_f64().unwrap() < 1.0 && page.contains(" of a disagreement, within "), "{rate}");
+    assert!(rate["factor"].as_f64().unwrap() < 1.0 && page.contains(" s the disagreement shrinks to "), "{rate}");
     // Nothing is agreed upon.
     let (text, summary, page) = run("theorem-8");
     assert_eq!(summary["prediction"], serde_json::Value::Null);

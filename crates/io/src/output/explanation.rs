@@ -175,7 +175,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
             }
             @if !footing.breaks.is_empty() {
                 div.card {
-                    h3 { (BREAKS) span.by { "of what holds; the rest says itself what it lacks" } }
+                    h3 { (BREAKS) span.by { "for the hypotheses that hold" @if !footing.lacks.is_empty() { "; the others are listed under " em { (LACKS) } } } }
                     @for one in &footing.breaks {
                         p { code { (one.id.name()) } " " (prose(&one.words)) }
                     }

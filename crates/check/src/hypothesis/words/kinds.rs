@@ -193,7 +193,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             agent.name
         ),
         KindEvidence::SafeCommand => {
-            "where it does not, a safe command stands in the place of the law, and the run goes on".into()
+            "otherwise a safe command replaces the law's, and the run goes on".into()
         }
         KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
     }
