@@ -22,7 +22,7 @@ const FALLS_STEADILY: f64 = 0.999;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
 /// s at the end, in 1/s of the gap, counts as left over above this.
-const LEFT_OVER: f64 = 1e-3;
+pub(super) const LEFT_OVER: f64 = 1e-3;
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]

@@ -368,7 +368,7 @@ fn middle(low: f64, high: f64) -> f64 {
 /// Axes whose value is said.
 const MOST_AXES: usize = 8;
 /// An estimate within this of the truth leaves the peak torque much as it is predicted.
-const NEAR: f64 = 0.2;
+pub(super) const NEAR: f64 = 0.2;
 
 #[cfg(test)]
 mod tests {
