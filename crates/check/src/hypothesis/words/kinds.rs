@@ -139,7 +139,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             "the scalar part of the error starts at zero: both ways are equally long, and rounding chooses between them"
                 .into()
         }
-        KindEvidence::NoTip => "the law has no tip of this robot".into(),
+        KindEvidence::NoTip => "the law has no end-effector of this robot".into(),
         KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
             "only the tool is uncertain, which the dynamics do not contain".into()
         }
