@@ -57,8 +57,8 @@ fn links(setup: &Setup) -> String {
         more => format!(" and {more} more"),
     };
     match needed.len() {
-        0 => "no link is needed by itself".to_owned(),
-        1 => format!("one link is needed by itself: {}", shown.concat()),
-        _ => format!("each of these links is needed by itself: {}{more}", shown.join(", ")),
+        0 => "no single link is indispensable".to_owned(),
+        1 => format!("losing one link breaks it: {}", shown.concat()),
+        _ => format!("losing any one of these links breaks it: {}{more}", shown.join(", ")),
     }
 }

@@ -280,7 +280,7 @@ impl fmt::Display for Theorem {
                 "no theorem of the paper: the argument of Theorem 6 with a null-space term of redundant joints in z_r"
             }
             Theorem::TipVelocity => {
-                "no theorem of the paper: a tip by its measured velocity, in the manner of what Remark 9 compares Theorem 6 with"
+                "no theorem of the paper: an end-effector by its measured velocity, in the manner of what Remark 9 compares Theorem 6 with"
             }
             Theorem::Theorem7 => "Theorem 7, (99) to (105) with the reference dynamics (97)",
             Theorem::PassivityFilter => {

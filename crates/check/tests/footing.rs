@@ -67,9 +67,9 @@ fn prop_the_links_that_are_named_are_those_without_which_no_tree_is_left() {
             _ => some += 1,
         }
         let expected = match needed.as_slice() {
-            [] => "no link is needed by itself".to_owned(),
-            [link] => format!("one link is needed by itself: {link}"),
-            links => format!("each of these links is needed by itself: {}", links.join(", ")),
+            [] => "no single link is indispensable".to_owned(),
+            [link] => format!("losing one link breaks it: {link}"),
+            links => format!("losing any one of these links breaks it: {}", links.join(", ")),
         };
         assert!(words.ends_with(&expected), "{words}, not {expected}");
     }

@@ -1,4 +1,4 @@
-//! A program of one's own: `forwardstep` with a delay and a kind of switching that it does not have. Scenario files name them as
+//! A program of your own: `forwardstep` with a delay and a kind of switching that it does not have. Scenario files name them as
 //! they name the shipped kinds:
 //!
 //! ```toml

@@ -1,4 +1,4 @@
-//! A law of one's own on a shipped robot: the two-link planar arm follows a trajectory under PD+ control of B. Paden and
+//! A law of your own on a shipped robot: the two-link planar arm follows a trajectory under PD+ control of B. Paden and
 //! R. Panja, *Globally asymptotically stable 'PD+' controller for robot manipulators*, 1988, in continuous time and sampled.
 //! Run it with `cargo run --example own_law`.
 //!

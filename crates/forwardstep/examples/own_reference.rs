@@ -1,4 +1,4 @@
-//! A program of one's own: `forwardstep` with reference dynamics that it does not have. Agents agree as (24) says, but each is
+//! A program of your own: `forwardstep` with reference dynamics that it does not have. Agents agree as (24) says, but each is
 //! drawn home too, as if one more neighbour stood there. Scenario files name them as they name the shipped kinds:
 //!
 //! ```toml

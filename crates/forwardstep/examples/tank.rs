@@ -1,4 +1,4 @@
-//! A program of one's own: `forwardstep` with a tank and a law that keeps its level. Scenario files name them as they name the
+//! A program of your own: `forwardstep` with a tank and a law that keeps its level. Scenario files name them as they name the
 //! shipped kinds:
 //!
 //! ```toml

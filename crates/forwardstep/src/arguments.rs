@@ -34,13 +34,17 @@ const SIX_ARMS: &str = "six-arms";
 const EXIT_STATUS: &str = "\
 Exit status:
     0  fine
-    1  check: a hypothesis is violated, not shown or not covered by the paper, and not accepted, or, with --practical, a
-       practical verdict is inadequate; run: the goal was missed; falsify, attack: a claim was refuted
-    2  input without meaning, or a folder that cannot be written to or is not that of a run
+    1  the answer is no. run: the goal was missed; check: a hypothesis is violated, not shown or not covered by the paper,
+       and not accepted, or, with --practical, a practical verdict is inadequate; explain --along: the sides of an equation
+       differ by more than rounding; falsify: a claim was refuted; attack: the same, or nothing could be tried in the time
+       given; smoothness: a derivative jumps that must not; sampling-limit: no period that was tried works; new: no trial
+       did what it should
+    2  invalid input, or a folder that cannot be written to or is not that of a run; nothing is written, unless the journal
+       failed during a run: then what was computed is kept
     3  the run broke down; what was computed is written
   130  interrupted by Ctrl-C; what was computed is written
-  143  terminated (SIGTERM), and
-  129  hung up (SIGHUP), the same";
+  143  terminated (SIGTERM); what was computed is written
+  129  hung up (SIGHUP); what was computed is written";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -104,7 +108,7 @@ pub(crate) enum Command {
     },
 }
 
-/// The main job: the six arms, into the usual folder.
+/// The main job: the six arms, into the default folder.
 impl Default for Command {
     fn default() -> Self {
         Command::Run(RunOptions {
@@ -269,7 +273,7 @@ fn lock(text: &str) -> Result<(String, f64), LockError> {
     }
 }
 
-// What is not given is asked for when there is a person to ask, and is as usual otherwise.
+// What is not given is asked for when there is a person to ask, and is the default otherwise.
 #[derive(Debug, Args)]
 pub(crate) struct NewOptions {
     /// The file to write, which must not exist yet [default: standard output]
@@ -284,7 +288,7 @@ pub(crate) struct NewOptions {
     #[arg(long, value_name = "N", value_parser = count_of_agents, allow_negative_numbers = true)]
     pub(crate) agents: Option<u32>,
     /// Their robot: a kind (planar_arm, point_mass, ship, vehicle, rotorcraft, spacecraft, chain, vector_chain, strict_feedback,
-    /// pure_feedback), ur5e, panda or the path of a URDF [default: planar_arm]
+    /// pure_feedback), ur5e, panda, gantry or the path of a URDF [default: planar_arm]
     #[arg(long, value_name = "ROBOT", add = ArgValueCompleter::new(suggest::kinds_and_robots))]
     pub(crate) robot: Option<String>,
     /// Give every joint dry friction, and keep estimates within bounds

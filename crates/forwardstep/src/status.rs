@@ -9,7 +9,7 @@ pub(crate) enum Status {
     Fine = 0,
     /// `check`: a hypothesis does not hold. `run`: the scenario's own goal was missed.
     Missed = 1,
-    /// Input without meaning, or a place that cannot be written to.
+    /// Invalid input, or a place that cannot be written to.
     BadInput = 2,
     /// The run broke down numerically; what was computed is written.
     BrokeDown = 3,

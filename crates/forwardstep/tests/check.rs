@@ -305,7 +305,7 @@ fn a_run_predicts_unless_that_takes_longer_than_the_run() {
     let said = |arguments: &[&str]| {
         stdout(&forwardstep(&folder, &[&["run", "two.toml", "--force"], arguments].concat()).success())
     };
-    let (predicted, left_out) = ("Predicted for robots that follow", "Not predicted, since");
+    let (predicted, left_out) = ("Predicted for robots that follow", "No prediction: ");
     let text = said(&[]);
     assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
     // 2 agents of 2 axes, and 10 horizons of one for the rate: 24 axes.

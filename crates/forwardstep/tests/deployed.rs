@@ -292,7 +292,7 @@ fn regress_no_more_damping_is_advised_where_samples_bear_no_more() {
     let noisy = "[control]\nsample_hz = 20\nnoise = { velocity = 1, seed = 1 }\n";
     let stiff = said(masses(70, 10, noisy), 0);
     assert!(
-        stiff.contains("samples are slow for the gains, with a margin σ of 0.87")
+        stiff.contains("the sampling period is too long for the gains (margin σ = 0.87")
             && !stiff.contains("raise the damping"),
         "{stiff}"
     );

@@ -23,7 +23,7 @@ fn regress_no_output_replaces_a_file_of_somebody_else() {
     ] {
         let began = Instant::now();
         let said = stderr(&forwardstep(&folder, arguments).code(2));
-        assert!(said.contains("already exists") && said.contains("give another name"), "{said}");
+        assert!(said.contains("already exists") && said.contains("choose another name"), "{said}");
         assert!(began.elapsed() < Duration::from_secs(30), "nothing is searched for before");
         assert_eq!(fs::read_to_string(path("own.toml")).unwrap(), text);
     }

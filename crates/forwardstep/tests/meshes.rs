@@ -47,7 +47,7 @@ fn shapes_of_a_urdf_are_on_the_page_and_nothing_from_outside() {
     let folder = arms();
     let said = stderr(&forwardstep(&folder, &["run", "arms/two.toml", "--out", "shaped", "--meshes"]).success());
     assert!(said.contains("the mesh `../outside.obj`: it lies outside of the URDF's folder and package"), "{said}");
-    assert!(said.contains("there is no such file") && said.matches("Drawn without").count() == 2, "{said}");
+    assert!(said.contains("there is no such file") && said.matches("Not drawn: ").count() == 2, "{said}");
     let text = fs::read_to_string(folder.path().join("shaped/shapes.json")).unwrap();
     let shapes: Shapes = serde_json::from_str(&text).unwrap();
     assert_eq!((shapes.solids.len(), shapes.robots.len(), shapes.agents.len()), (2, 1, 2));
@@ -84,5 +84,5 @@ fn a_report_that_is_built_anew_keeps_its_shapes() {
 fn without_shapes_the_run_says_so_and_goes_on() {
     let folder = folder();
     let said = stderr(&forwardstep(&folder, &["run", "task-space-ur5e", "--meshes", "--out", "run"]).success());
-    assert!(said.contains("Drawn without: ur5e.urdf: it says nothing of shapes"), "{said}");
+    assert!(said.contains("Not drawn: ur5e.urdf: it says nothing of shapes"), "{said}");
 }

@@ -151,9 +151,10 @@ fn what_was_predicted_stands_beside_what_was_observed() {
     // Estimates start far away, and the graph switches.
     let (_, summary, page) = run("six-arms");
     assert!(summary["metrics"]["final_tracking_error"].as_f64().unwrap() > 1e-3);
-    assert!(page.contains("what they do to the course is not predicted"));
+    assert!(page.contains("At the end s is still ") && page.contains("it also moved the value agreed upon"));
+    assert!(page.contains("estimates have not settled. The theorem gives s → 0 without a rate"));
     let rate = &summary["prediction"]["rate"]["period"];
-    assert!(rate["factor"].as_f64().unwrap() < 1.0 && page.contains(" of a disagreement, within "), "{rate}");
+    assert!(rate["factor"].as_f64().unwrap() < 1.0 && page.contains(" s the disagreement shrinks to "), "{rate}");
     // Nothing is agreed upon.
     let (text, summary, page) = run("theorem-8");
     assert_eq!(summary["prediction"], serde_json::Value::Null);

@@ -1,4 +1,4 @@
-//! Setups by hand, with what is usual for everything that is not said. All fields stay public: what a function here sets can be
+//! Setups by hand, with defaults for everything that is not said. All fields stay public: what a function here sets can be
 //! changed afterwards.
 //!
 //! ```

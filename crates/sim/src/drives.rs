@@ -60,7 +60,13 @@ impl RobotSetup {
         let Valued { drives, dampings, armatures, frictions } = self.valued(&before, drives)?;
         let asked = !(dampings.is_empty() && armatures.is_empty() && frictions.is_empty());
         let driven = self.kind.lagrangian().and_then(|robot| robot.with_drives(drives.clone()));
-        such(driven.is_some() || !asked, Path::default(), "armature", 0.0, "left out: this robot has no joints")?;
+        such(
+            driven.is_some() || !asked,
+            Path::default(),
+            "armature",
+            0.0,
+            "must be left out: this robot has no joints",
+        )?;
         let Some(kind) = driven else { return Ok(self) };
         let name = |joint: usize, [turning, sliding]: [&str; 2]| {
             let axis = self.axes.get(joint);

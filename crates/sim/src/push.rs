@@ -332,7 +332,7 @@ pub enum PushError {
         bodies: usize,
     },
     /// A place that this robot has not.
-    #[error("it grips a robot of another kind: links belong to trees, tips to planar arms")]
+    #[error("it grips a robot of another kind: links belong to trees, end-effectors to planar arms")]
     Grip,
     /// A stiffness or damping that is negative.
     #[error("a stiffness or damping is {value}, but must be finite and not negative")]
@@ -340,13 +340,13 @@ pub enum PushError {
         /// The value.
         value: f64,
     },
-    /// A number that is none.
+    /// A number that is not finite.
     #[error("it holds {value}, which is not a finite number")]
     NotFinite {
         /// The value.
         value: f64,
     },
-    /// A table that says nothing.
+    /// An incomplete table.
     #[error("its table needs at least two complete rows, with times that rise")]
     Table,
 }

@@ -240,7 +240,7 @@ pub struct Start {
     /// The rest of a plant's state, if it has more than q and q̇.
     pub rest: Vec<f64>,
     /// z(0), ż(0), … z^(ℓ−1)(0); missing ones take z(0) = q̇(0) where q̇ is measured, else zero, and zero derivatives. Then what
-    /// [`Interface::further_starts`] has, empty for the usual start. Of the backstepping baseline, instead, what its filter holds.
+    /// [`Interface::further_starts`] has, empty for the default start. Of the backstepping baseline, instead, what its filter holds.
     pub reference: Vec<Vec<f64>>,
 }
 
@@ -356,9 +356,9 @@ impl Actuators {
     }
 }
 
-/// The usual relative tolerance of an adaptive method.
+/// The default relative tolerance of an adaptive method.
 pub const RTOL: f64 = 1e-6;
-/// The usual absolute tolerance of an adaptive method.
+/// The default absolute tolerance of an adaptive method.
 pub const ATOL: f64 = 1e-8;
 
 /// What happens when a sampled controller cannot go on as usual.

@@ -87,7 +87,7 @@ fn own_noise_of_the_velocity_of_a_tip_reaches_the_torque() {
     let refused = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the noise of the velocities of tips is 0.01, but no law measures the velocity of a tip"
+        "the noise of the velocities of end-effectors is 0.01, but no law measures the velocity of an end-effector"
     );
 }
 

@@ -271,36 +271,37 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Some(Rubbing::Smooth) | None => bounded,
     };
     let then = match &case.led {
-        Led::Consensus(_) | Led::PureIntegral(_) if case.roots.all_real().is_none() => "Without that, what is left is linear, but no chain of \
-             averages, since not all roots are real: the theorem does not say that agents agree, and over graphs that switch they may not."
-            .into(),
+        Led::Consensus(_) | Led::PureIntegral(_) if case.roots.all_real().is_none() => format!(
+            "With {s} = 0, what is left is linear, but no chain of averages, since not all roots are real: the theorem does not say that agents \
+             agree, and over graphs that switch they may not."
+        ),
         Led::Consensus(_) | Led::PureIntegral(_) => format!(
-            "Without that, each ψ moves towards an average of what is its own and what is heard, whatever the bounded delays are; as long as the \
+            "With {s} = 0, each ψ moves towards an average of what is its own and what is heard, whatever the bounded delays are; as long as the \
              graph is connected as the theorem asks, all ψ come together. {bounded}, and what is left is the undisturbed system: \
              {q}_i − {q}_j → 0, and all derivatives of {q}_i vanish."
         ),
         Led::Leader(FollowingDesign::Swarm { .. }, _) => format!(
-            "Without that, the differences to the leader fall as long as the coupling and γ are as large as `forwardstep check` asks. {bounded}, and \
+            "With {s} = 0, the differences to the leader fall as long as the coupling and γ are as large as `forwardstep check` asks. {bounded}, and \
              {q}_i − {q}_0 → 0 with its derivative."
         ),
         Led::Leader(..) if case.heard() != At::Now => format!(
-            "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, until it is as \
+            "With {s} = 0, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, until it is as \
              small as the delays let it be: what the leader does meanwhile has not been heard yet. {bounded}, and {q}_i − {q}_0 stays within what \
              `forwardstep check` says."
         ),
         Led::Leader(..) => format!(
-            "Without that, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, and \
+            "With {s} = 0, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, and \
              vanishes in finite time. {bounded}, and {q}_i − {q}_0 → 0 with its derivative."
         ),
         Led::Target => format!(
-            "Without that, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
+            "With {s} = 0, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
              from the target."
         ),
         Led::Desired(desired) if desired.protocol.is_some() => {
-            "Without that, what is left is what the scenario states, of which its author says where it leads.".into()
+            format!("With {s} = 0, what is left is what the scenario states, of which its author says where it leads.")
         }
         Led::Desired(desired) if desired.follows_target => format!(
-            "Without that, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
+            "With {s} = 0, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
              `forwardstep check` says. {bounded}, and so does the distance from the target."
         ),
         Led::Desired(_) => "With s = 0 the desired dynamics as stated are left, and no theorem of the paper covers their convergence.".into(),
@@ -329,7 +330,7 @@ fn with_dry_friction(case: &Case<'_>) -> String {
         }
     };
     format!(
-        "Without that, {undisturbed}. Since s need not vanish, differences in proportion to it stay: the theorem does not cover this, and \
+        "With s = 0, {undisturbed}. Since s need not vanish, differences in proportion to it stay: the theorem does not cover this, and \
          `forwardstep check` says how large s stays."
     )
 }

@@ -72,7 +72,7 @@ table! {
         "a delay that grows for ever, such as T = t, or a link that loses every packet; no bounded delay does, however long or abrupt";
     NoDelay, "no-delay", "Theorems 8 and 9", Source::Paper,
         "messages arrive without delay",
-        "messages that are late: who follows a moving leader then lags behind, and the sign acts on what was";
+        "messages that are late: who follows a moving leader then lags behind, and the sign acts on old data";
     MessagesInTime, "messages-in-time", "own derivation", Source::Derived,
         "no message becomes older than the time-out, so that graphs are those that are stated",
         "a message later than the time-out: its link then counts as lost, and the graph is another";

@@ -149,6 +149,19 @@ impl Rigour {
             Rigour::Watched => "watched",
         }
     }
+
+    /// What the word means.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Rigour::Exact => "by counting and comparing what the scenario says, with nothing rounded",
+            Rigour::Enclosed => "by interval arithmetic, which bounds all rounding",
+            Rigour::Given => "from numbers that were drawn or logged, up to the end of the run",
+            Rigour::Computed => "in floating point, without a bound on the rounding",
+            Rigour::Sampled => "by looking at finitely many points",
+            Rigour::Declared => "by the word of the user",
+            Rigour::Watched => "by the run itself",
+        }
+    }
 }
 
 impl Hypothesis {

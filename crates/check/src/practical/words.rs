@@ -82,9 +82,9 @@ fn standing(load: &StaticLoad) -> String {
     let those = if *postures == 1 {
         "at the start".into()
     } else {
-        format!("of {postures} postures between the starts and on the way")
+        format!("over {postures} postures between the starts and on the way")
     };
-    format!("the largest share of a limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+    format!("the largest share of a torque limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
 }
 
 fn power(bound: &PowerBound) -> String {
@@ -189,7 +189,7 @@ fn whole(found: &WholeLoop) -> String {
     };
     let places = match &led[..] {
         [] => "at the start".to_owned(),
-        [last] => format!("at the start and where it leads by {} s", rounded(last.t_s)),
+        [last] => format!("at the start and at the state predicted for t = {} s", rounded(last.t_s)),
         led => format!("at the start and at {} states on the way", led.len()),
     };
     let advice = match last.rate().ideal_per_s.or(start.rate().ideal_per_s) {

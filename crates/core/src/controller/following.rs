@@ -33,7 +33,7 @@ pub enum ChainError {
     /// A gain that is not positive.
     #[error(transparent)]
     Gain(#[from] GainError),
-    /// An antiderivative that is none.
+    /// Φ is not an antiderivative of φ.
     #[error(
         "the antiderivative of regressor {} has the slope {slope} in the highest derivative where the regressor is {regressor}",
         .parameter + 1
@@ -46,7 +46,7 @@ pub enum ChainError {
         /// What it should be.
         regressor: f64,
     },
-    /// An antiderivative that is none at points that were not looked at, or is written too differently.
+    /// Φ could not be shown to be an antiderivative of φ: it is none at points that were not looked at, or is written too differently.
     #[error(
         "the antiderivative of regressor {} could not be shown to have the regressor as its slope in the highest derivative",
         .parameter + 1

@@ -1,6 +1,6 @@
 //! The plant (33): d^k x/dt^k = χ(x*) + ψ(x*) u + w with x* = [x, ẋ, …, d^(k−1)x/dt^(k−1)].
 //!
-//! w is a disturbance, which the paper has not. χ = χ₀ + φᵀθ has a part that is known and a part that is linear in parameters which only nature knows. There may be
+//! w is a disturbance, which the paper has not. χ = χ₀ + φᵀθ has a part that is known and a part that is linear in unknown parameters. There may be
 //! none. What χ₀, φ and ψ are is said by [`Terms`]: closures in Rust, or [`Formulas`] that come from a file.
 
 use alloc::vec;

@@ -1,7 +1,7 @@
 //! The plant (33) with several axes: x ∈ ℝᵐ, d^k x/dt^k = χ(x*) + ψ(x*) u + w with u, w ∈ ℝᵐ and a matrix ψ ∈ ℝ^(m×m), where
 //! x* = [x, ẋ, …, d^(k−1)x/dt^(k−1)] ∈ ℝ^(km).
 //!
-//! The paper has one axis. χ = χ₀ + Y θ has a part that is known and a part that is linear in parameters which only nature knows; Y ∈ ℝ^(m×p)
+//! The paper has one axis. χ = χ₀ + Y θ has a part that is known and a part that is linear in unknown parameters; Y ∈ ℝ^(m×p)
 //! has a row for each axis. Any term may hold any entry of x*, so that the axes pull at each other.
 
 use alloc::vec;

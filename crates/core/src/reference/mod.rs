@@ -85,7 +85,7 @@ pub trait Reference: Send + Sync + 'static {
     fn derivatives(&self) -> usize;
 
     /// The set-valued sign in it, if it has one. The last block of state is then the value of the sign, which has rate zero and
-    /// is set by who makes time pass.
+    /// is set by the integrator, or the sampled controller.
     fn sliding(&self) -> Option<&Sliding>;
 
     /// Whether the rate of the state is affine in the state, by a matrix that depends on Σ_j w_ij alone and is the same for each axis.

@@ -8,7 +8,7 @@
 //!
 //! A leader that moves is followed on e = 0, where ς takes whatever value in between keeps it there. A number that jumps
 //! between 1 and −1 cannot do that: it chatters. So ς is not computed inside the vector field. It is a block of reference
-//! state with rate zero, and who makes time pass sets it. In every design here −γ ς is a part of the rate of the block before
+//! state with rate zero, which the integrator, or the sampled controller, sets. In every design here −γ ς is a part of the rate of the block before
 //! it, and with s (ṡ where a = q̈) held over a period h the sign moves e by −hγ L ς, L the Laplacian of the followers. Implicit
 //! is the choice that suits the end of the period,
 //!

@@ -1,4 +1,4 @@
-//! Who sets dry friction: values of σ ∈ Sgn q̇ that suit the end of a period.
+//! Sets dry friction: values of σ ∈ Sgn q̇ that suit the end of a period.
 //!
 //! Over a period h with σ held the velocity goes from q̇ to about r = q̇ + h (q̈₀ − M⁻¹F σ), where q̈₀ is the acceleration without friction.
 //! The value that suits the end of the period solves

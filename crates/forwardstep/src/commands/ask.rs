@@ -5,7 +5,7 @@ use std::io::{self, BufRead, IsTerminal, Write};
 
 use clap::ValueEnum;
 
-/// Asks for what is missing, or takes what is usual.
+/// Asks for what is missing, or takes the default.
 pub(crate) struct Asker {
     is_there_anybody: bool,
 }
@@ -16,7 +16,7 @@ impl Asker {
         Asker { is_there_anybody: io::stdin().is_terminal() && io::stdout().is_terminal() }
     }
 
-    /// What was given, else the answer, else what is usual. Asks again as long as `parse` has an objection.
+    /// What was given, else the answer, else the default. Asks again as long as `parse` has an objection.
     pub(crate) fn ask<T: Display, E: Display>(
         &self,
         given: Option<T>,
@@ -46,7 +46,7 @@ impl Asker {
         }
     }
 
-    /// The same for yes or no, which is usual.
+    /// The same for yes or no, which is the default.
     pub(crate) fn confirm(&self, question: &str) -> bool {
         let parse = |answer: &str| match answer.to_lowercase().as_str() {
             "y" | "yes" => Ok("yes"),

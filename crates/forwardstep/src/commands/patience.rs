@@ -29,5 +29,4 @@ impl Patience {
 }
 
 /// What is said while a scenario is read and looked at.
-pub(crate) const LOOKING: &str =
-    "still at work: what holds of robots with very many joints, or of very many agents, takes a while to find out";
+pub(crate) const LOOKING: &str = "still checking: robots with many joints, or many agents, take a while";

@@ -25,7 +25,7 @@ pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool)
                 return Ok(());
             }
             let said = format!("`{}` already exists, and this command did not write it", shown(path));
-            Err(Plain::with_help(said, Some("give another name; it would be lost")))
+            Err(Plain::with_help(said, Some("choose another name; the file would be overwritten")))
         }
         // What is written into a pipe waits for its reader.
         Ok(_) if is_unread(path) => Err(Plain::with_help(

@@ -70,19 +70,15 @@ pub(super) fn execute(
     match &prediction {
         Some(prediction) => show_predictions(setup, prediction, console),
         None if predicts || check::ideal(setup).is_err() => {}
-        None => {
-            console.line("Not predicted, since that would take a good part of the run: --predict does it all the same.")
-        }
+        None => console
+            .line("No prediction: it would take a large part of the run's time. Use --predict to get one anyway."),
     }
     console.line("");
 
     let shapes = options.meshes.then(|| {
         let (shapes, left_out) = Shapes::read(&scenario.models);
         let left_out = alike(&left_out);
-        left_out
-            .iter()
-            .take(MOST_LEFT_OUT)
-            .for_each(|why| remark(format_args!("Drawn without: {}", shown(why.as_str()))));
+        left_out.iter().take(MOST_LEFT_OUT).for_each(|why| remark(format_args!("Not drawn: {}", shown(why.as_str()))));
         if let Some(more @ 1..) = left_out.len().checked_sub(MOST_LEFT_OUT) {
             remark(format_args!("and without {more} more"));
         }
@@ -161,7 +157,7 @@ fn alike(left_out: &[String]) -> Vec<String> {
     }
     let told = all.into_iter().map(|(first, _, more)| match more {
         0 => first.to_owned(),
-        more => format!("{first}; so it is with {more} more"),
+        more => format!("{first} (and {more} more)"),
     });
     told.collect()
 }
@@ -243,6 +239,6 @@ mod tests {
         let why =
             ["a.urdf: the mesh `b.stl`: gone", "a.urdf: the mesh `c.stl`: gone", "a.urdf: it says nothing of shapes"];
         let told = alike(&why.map(str::to_owned));
-        assert_eq!(told, ["a.urdf: the mesh `b.stl`: gone; so it is with 1 more", why[2]]);
+        assert_eq!(told, ["a.urdf: the mesh `b.stl`: gone (and 1 more)", why[2]]);
     }
 }

@@ -43,6 +43,7 @@ fn an_explanation_holds_the_numbers_of_the_scenario_in_every_form() {
     forwardstep(&folder, &["run", "two.toml", "--out", "run"]).success();
     let page = std::fs::read_to_string(folder.path().join("run/report.html")).unwrap();
     assert!(page.contains("Why it would work") && page.contains("What it lacks"));
+    assert!(page.contains("Why it would converge") && !page.contains("Why it converges"));
     assert!(page.contains("What would break it") && page.contains("complex roots: the disagreement can then grow"));
     forwardstep(&folder, &["explain", "two.toml", "--json", "--latex"]).code(2);
     assert!(stderr(&forwardstep(&folder, &["explain", "thre.toml"]).code(2)).contains("thre.toml"));

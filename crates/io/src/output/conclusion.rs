@@ -22,7 +22,7 @@ const FALLS_STEADILY: f64 = 0.999;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
 /// s at the end, in 1/s of the gap, counts as left over above this.
-const LEFT_OVER: f64 = 1e-3;
+pub(super) const LEFT_OVER: f64 = 1e-3;
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +118,7 @@ impl End {
         let led = setup.following().is_some();
         let (done, so_far) = match (kind, led) {
             (Gap::Disagreement, _) => ("agreed", format!("{size} apart")),
-            (Gap::Error, true) => ("with the leader", format!("{size} from the leader")),
+            (Gap::Error, true) => ("following", format!("{size} from the leader")),
             (Gap::Error, false) => ("on target", format!("{size} from the target")),
         };
         if reached {
@@ -231,7 +231,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
         let coarse = metrics.watched.and_then(|watched| watched.sampling_margin).map(|margin| margin.sigma);
         let change = match coarse.filter(|sigma| *sigma > RECOMMENDED_MARGIN) {
             Some(sigma) => format!(
-                "samples are slow for the gains, with a margin σ of {}: sample faster, or let gains be smaller, as `forwardstep check` says which",
+                "the sampling period is too long for the gains (margin σ = {}): sample faster or lower the gains; `forwardstep check` says which",
                 about(sigma)
             ),
             None => "raise the damping, or see what acts on them".to_owned(),

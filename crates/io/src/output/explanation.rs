@@ -1,6 +1,6 @@
 //! Why a run converges, as text, LaTeX, JSON and part of the report.
 
-use forwardstep_check::derivation::{Explained, Explanation, Line};
+use forwardstep_check::derivation::{Explained, Explanation, Line, Subject};
 use forwardstep_check::{Footing, Ground};
 use forwardstep_sim::Setup;
 use maud::{Markup, PreEscaped, html};
@@ -45,7 +45,7 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation, footing: &Foo
     for design in &explanation.designs {
         lines.push(TextLine::Agents(names::some_names(setup, &design.agents)));
         for section in &design.sections {
-            lines.push(TextLine::Heading(section.subject.heading()));
+            lines.push(TextLine::Heading(heading(section.subject, footing)));
             lines.extend(section.lines.iter().map(|line| match line {
                 Line::Words(words) => TextLine::Words(words.clone()),
                 Line::Formula(formula, place) => TextLine::Formula(unicode(formula), place),
@@ -57,6 +57,14 @@ pub fn explanation_lines(setup: &Setup, explanation: &Explanation, footing: &Foo
         lines.extend(footing.breaks.iter().map(|one| TextLine::Words(in_a_line(one))));
     }
     lines
+}
+
+/// The heading of a section; what does not follow is not said to converge.
+fn heading(subject: Subject, footing: &Footing) -> &'static str {
+    match subject {
+        Subject::Convergence if !footing.lacks.is_empty() => "Why it would converge",
+        _ => subject.heading(),
+    }
 }
 
 fn in_a_line(one: &Ground) -> String {
@@ -73,7 +81,7 @@ pub fn explanation_latex(setup: &Setup, explanation: &Explanation, footing: &Foo
     for design in &explanation.designs {
         text += &format!("\n{}", comment(&names::some_names(setup, &design.agents)));
         for section in &design.sections {
-            text += &format!("\\subsection*{{{}}}\n", section.subject.heading());
+            text += &format!("\\subsection*{{{}}}\n", heading(section.subject, footing));
             for line in &section.lines {
                 match line {
                     Line::Words(words) => text += &comment(words),
@@ -160,7 +168,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
                         span.by { "a cascade of degree " (before) ", reduced to " (after) }
                     } }
                     @for part in &design.sections {
-                        h3 { (part.subject.heading()) }
+                        h3 { (heading(part.subject, footing)) }
                         @for line in &part.lines {
                             @match line {
                                 Line::Words(words) => p { (prose(words)) },
@@ -175,7 +183,7 @@ pub(crate) fn explanation_markup(setup: &Setup, explanation: &Explanation, footi
             }
             @if !footing.breaks.is_empty() {
                 div.card {
-                    h3 { (BREAKS) span.by { "of what holds; the rest says itself what it lacks" } }
+                    h3 { (BREAKS) span.by { "for the hypotheses that hold" @if !footing.lacks.is_empty() { "; the others are listed under " em { (LACKS) } } } }
                     @for one in &footing.breaks {
                         p { code { (one.id.name()) } " " (prose(&one.words)) }
                     }

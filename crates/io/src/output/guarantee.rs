@@ -145,9 +145,10 @@ impl GuaranteeFound {
             ", whatever the start"
         };
         if let Some(GuaranteedRepeat { over_s, windows, left }) = self.repeat {
-            let windows = windows.filter(|windows| *windows > 1).map(|windows| format!(", {windows} windows"));
+            let windows = windows.filter(|windows| *windows > 1).map(|windows| format!(" ({windows} windows)"));
             let windows = windows.unwrap_or_default();
-            sentence += &format!("; {} of that bound after every {} s more{windows}", percent(left), above(over_s));
+            sentence +=
+                &format!("; and every further {} s{windows} the bound shrinks to {}", above(over_s), percent(left));
         }
         let mut sentences = vec![sentence];
         sentences.extend(self.any_delay.as_ref().map(GuaranteedClass::sentence));
@@ -208,7 +209,7 @@ mod tests {
             any_delay: Some(any_delay),
         };
         let whole = "at most 50 % of the spread of all cascaded variables is left after 2 s, 10 % after 5 s, 1 % after 6.5 s, whatever the \
-                     start; 20 % of that bound after every 4 s more, 3 windows";
+                     start; and every further 4 s (3 windows) the bound shrinks to 20 %";
         let any = "for any delays up to 0.4 s 1 % after 10²⁹ s, which is of no practical use";
         assert_eq!(found.sentences(10.0), [whole, any]);
         // What is not settled ends with what is left on the horizon.

@@ -214,10 +214,11 @@ impl Predictions {
         sentences.push(match &self.rate {
             PredictedRate::NoneSince(reason) => format!("rate: none, since {reason}"),
             PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => {
-                let (factor, wavers) = (number_words(*factor), number_words(100.0 * wavers));
+                let changes = if *factor < 1.0 { "shrinks" } else { "grows" };
+                let (factor, wavers) = (number_words(100.0 * factor), number_words(100.0 * wavers));
                 format!(
-                    "rate: {} 1/s; a period of {period_s} s leaves {factor} of a disagreement, within {wavers} % over {periods} \
-                     periods",
+                    "rate: {} 1/s; every {period_s} s the disagreement {changes} to {factor} % (checked over {periods} periods, to \
+                     {wavers} %)",
                     number_words(*rate_per_s)
                 )
             }
@@ -367,7 +368,7 @@ fn middle(low: f64, high: f64) -> f64 {
 /// Axes whose value is said.
 const MOST_AXES: usize = 8;
 /// An estimate within this of the truth leaves the peak torque much as it is predicted.
-const NEAR: f64 = 0.2;
+pub(super) const NEAR: f64 = 0.2;
 
 #[cfg(test)]
 mod tests {

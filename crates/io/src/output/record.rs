@@ -38,7 +38,7 @@ pub struct RunRecord<'a> {
     pub goal: Option<GoalOutcome>,
     /// What digital control cost, when there was any and the run was not interrupted.
     pub digital: Option<DigitalCost>,
-    /// What changed V, agent by agent under (6)–(7); empty in continuous time.
+    /// What changed V, by each agent whose law has a proof here, with `run --balance`; empty without it, and in continuous time.
     pub injected: Vec<Injected>,
     /// The same over time, of all agents together.
     pub injected_course: Option<InjectedCourse>,

@@ -67,7 +67,8 @@ pub struct Summary {
     /// What digital control cost, when there was any.
     #[serde(default)]
     pub digital: Option<DigitalCost>,
-    /// What changed V, agent by agent under (6)–(7) with digital control; absent where there are none, and in documents of older versions.
+    /// What changed V, by each agent whose law has a proof here: with digital control and `run --balance`; absent otherwise, and in documents of
+    /// older versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub injected: Vec<Injected>,
     /// The same over time, of all agents together; absent where there is none, and in documents of older versions.

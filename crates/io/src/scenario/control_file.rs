@@ -79,7 +79,7 @@ pub struct NoiseFile {
     /// Standard deviation of velocities, in rad/s or m/s. Default: 0.
     #[schemars(range(min = 0))]
     pub velocity: Option<At<f64>>,
-    /// Standard deviation of the velocities of tips, in m/s; for laws that measure them. Default: 0.
+    /// Standard deviation of the velocities of end-effectors, in m/s; for laws that measure them. Default: 0.
     #[schemars(range(min = 0))]
     pub tip_velocity: Option<At<f64>>,
 }

@@ -165,7 +165,7 @@ impl<'i> Document<'i> {
             [Segment::Key("agents"), Segment::Index(agent), inner @ ..] => {
                 let entry = self.entry(*entries.get(*agent)?)?;
                 let own = deepest(entry, inner);
-                // Without a law the robot has the usual one.
+                // Without a law the robot has its default one.
                 let robot = || (0, entry.get_ref().get("robot").unwrap_or(entry).span());
                 (Some(if own.0 == 0 { robot() } else { own }), inner)
             }

@@ -150,12 +150,12 @@ pub fn positive(key: &'static str, number: &At<f64>) -> Result<f64, Fault> {
     checked(number, quantity::positive("", key, number.value)).map(|()| number.value)
 }
 
-/// A number, or the usual one; what it must be is checked where its kind is built.
+/// A number, or the default one; what it must be is checked where its kind is built.
 pub fn number_or(number: &Option<At<f64>>, usual: f64) -> f64 {
     number.as_ref().map_or(usual, |number| number.value)
 }
 
-/// A positive number, or the usual one.
+/// A positive number, or the default one.
 ///
 /// # Errors
 /// The mistake, at its place.
@@ -163,7 +163,7 @@ pub fn positive_or(key: &'static str, number: &Option<At<f64>>, usual: f64) -> R
     number.as_ref().map_or(Ok(usual), |number| positive(key, number))
 }
 
-/// A number that is not negative, or the usual one.
+/// A number that is not negative, or the default one.
 ///
 /// # Errors
 /// The mistake, at its place.

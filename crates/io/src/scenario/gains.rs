@@ -42,7 +42,7 @@ pub enum EstimateStartFile {
     Given(At<Vec<At<f64>>>),
 }
 
-/// K of `agent`, or the usual one for its robot.
+/// K of `agent`, or the default one for its robot.
 ///
 /// # Errors
 /// The first mistake, at its place.
@@ -55,7 +55,7 @@ pub fn damping(file: Option<&DampingFile>, agent: &LawReader<'_>) -> Result<Gain
     }
 }
 
-/// Γ of `agent`, or the usual one for its robot.
+/// Γ of `agent`, or the default one for its robot.
 ///
 /// # Errors
 /// The first mistake, at its place.
@@ -70,12 +70,12 @@ pub fn adaptation(file: Option<&At<GainOrBandwidth>>, agent: &LawReader<'_>) -> 
     }
 }
 
-/// Whether the inertias of a robot span decades, so that its usual gains are bandwidths.
+/// Whether the inertias of a robot span decades, so that its default gains are bandwidths.
 pub(super) fn has_scales(robot: &RobotSetup) -> bool {
     matches!(robot.interface().attachments, Attachments::Links(_))
 }
 
-/// A gain without a bandwidth, or the usual number.
+/// A gain without a bandwidth, or the default number.
 ///
 /// # Errors
 /// The mistake, at its place.

@@ -47,11 +47,11 @@ pub enum ByFile {
     /// What is added to the equations of a chain: one number for a chain of derivatives, whose last equation it enters; one for
     /// each equation of a chain in feedback form. In a table of CSV they are `w1`, `w2`, ….
     Disturbance(At<CourseFile>),
-    /// A force and a torque on a link of a URDF, or on the outer link of a planar arm, at its tip.
+    /// A force and a torque on a link of a URDF, or on the outer link of a planar arm, at its end-effector.
     Wrench(WrenchFile),
     /// Virtual springs and dampers on axes, as of a hand that leads them along a path.
     VirtualSpringOnAxes(VirtualSpringOnAxesFile),
-    /// A virtual spring and damper on a point of a link, or on the tip of a planar arm, as of a hand that leads it along a path.
+    /// A virtual spring and damper on a point of a link, or on the end-effector of a planar arm, as of a hand that leads it along a path.
     VirtualSpringOnPoint(VirtualSpringOnPointFile),
 }
 
@@ -59,7 +59,7 @@ pub enum ByFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WrenchFile {
-    /// The link of the URDF, fixed ones such as `tool0` too. Planar arms are pushed at their tip.
+    /// The link of the URDF, fixed ones such as `tool0` too. Planar arms are pushed at their end-effector.
     pub link: Option<At<String>>,
     /// Where the force acts, in the frame of the link, in m. Default: its origin.
     pub at_m: Option<At<[f64; 3]>>,
@@ -105,7 +105,7 @@ pub struct VirtualSpringOnAxesFile {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VirtualSpringOnPointFile {
-    /// The link of the URDF that it holds. Planar arms are held at their tip.
+    /// The link of the URDF that it holds. Planar arms are held at their end-effector.
     pub link: Option<At<String>>,
     /// The point it holds, in the frame of the link, in m. Default: its origin.
     pub at_m: Option<At<[f64; 3]>>,

@@ -57,7 +57,7 @@ pub enum PushProblem {
         links: usize,
     },
     /// A link where there is none.
-    #[error("`{agent}` is a planar arm, which is pushed at its tip")]
+    #[error("`{agent}` is a planar arm, which is pushed at its end-effector")]
     TipOnly {
         /// The agent.
         agent: String,

@@ -18,7 +18,7 @@ const NAMES: &[(&[&str], &str)] = &[
     ),
     (
         &["gripper", "grippers", "finger", "fingers"],
-        "a gripper is a part of the URDF; its joints are held with `robot.urdf.locked = { finger_joint = 0.02 }`",
+        "a gripper is a part of the URDF; its joints are held with `robot.urdf.locked = { panda_finger_joint1 = 0.02 }`",
     ),
     (
         &["payload", "load", "payloads"],
@@ -46,7 +46,8 @@ const NAMES: &[(&[&str], &str)] = &[
     ),
 ];
 
-/// Words that a wish is written with, each a whole word of a key or the key, and what there is instead. The first row that fits counts.
+/// Words that a wish is written with, each a whole word of a key or the key; what is so here, and what comes nearest. The first row that
+/// fits counts.
 const WISHES: &[(&[&str], &str)] = &[
     (
         &[
@@ -65,16 +66,16 @@ const WISHES: &[(&[&str], &str)] = &[
             "distances",
             "separation",
         ],
-        "a `target` keeps vehicles and rotorcraft apart by constant offsets, and joints keep to the position limits of their URDF \
-         (`enforce_limits`); else robots and obstacles pass through each other",
+        "robots pass through each other, and there are no obstacles. Nearest: a `target` keeps vehicles and rotorcraft apart by constant \
+         offsets, and joints keep to the position limits of their URDF (`enforce_limits`)",
     ),
     (
         &["contact", "contacts", "ground", "grasp", "touch", "impact", "terrain", "floor", "slope"],
-        "nothing touches anything; what pushes a robot is given as a course in time: `[[external_wrenches]]`",
+        "nothing touches anything. Nearest: `[[external_wrenches]]`, which push a robot as a course in time or as virtual springs",
     ),
     (
-        &["floating", "freeflyer", "legged", "humanoid", "mobile", "quadruped", "biped", "hexapod", "legs"],
-        "arms stand on a fixed base; what moves freely is a kind of its own: `robot.vehicle`, `robot.rotorcraft`, `robot.spacecraft`, `robot.ship`",
+        &["floating", "base", "freeflyer", "legged", "humanoid", "mobile", "quadruped", "biped", "hexapod", "legs"],
+        "arms stand on a fixed base. Nearest: the kinds that move freely, `robot.vehicle`, `robot.rotorcraft`, `robot.spacecraft`, `robot.ship`",
     ),
     (
         &[
@@ -89,47 +90,52 @@ const WISHES: &[(&[&str], &str)] = &[
             "diff_drive",
             "ackermann",
         ],
-        "nothing rolls; in the plane `robot.ship` moves in every direction, and `robot.vehicle` is pushed along one axis of its body",
+        "nothing rolls. Nearest: `robot.ship`, which moves in the plane in every direction, and `robot.vehicle`, which is pushed along one axis of its body",
     ),
     (
         &["auv", "rov", "submarine", "underwater", "airplane", "aircraft", "helicopter"],
-        "in water or air there are `robot.ship` in the plane, and `robot.vehicle` and `robot.rotorcraft` in space",
+        "submarines and aircraft with wings have no kind of their own. Nearest: `robot.ship` in the plane, `robot.vehicle` and `robot.rotorcraft` in space",
     ),
     (
         &["camera", "cameras", "vision", "lidar", "image", "perception", "slam"],
-        "controllers measure positions and velocities; noise, resolution and late samples are in `[control]`",
+        "controllers measure positions and velocities alone. Nearest: noise, resolution and late samples of those, in `[control]`",
     ),
     (
         &["trajectory", "trajectories", "planner", "planning", "mpc", "optimal", "optimisation", "optimization"],
-        "nothing is planned; robots agree (`reference.consensus`), follow a leader (`reference.leader`) or targets (`reference.tracking`)",
+        "nothing is planned. Nearest: robots agree (`reference.consensus`), follow a leader (`reference.leader`) or targets (`reference.tracking`)",
     ),
     (
         &["soft", "flexible", "elastic", "elasticity", "backlash", "cable", "tendon"],
-        "joints and links are rigid; `damping`, `armature` and `friction` are what is known of drives",
+        "joints and links are rigid. Nearest: what is known of drives, `damping`, `armature` and `friction`",
     ),
     (
         &["ros", "ros2", "hardware", "driver", "ethercat", "fieldbus"],
-        "the program talks to no robot; the controllers of the library do, a step at a time: `core::sampled::Sampled`",
+        "the program talks to no robot. Nearest: the controllers of the library, which a program of your own steps: `core::sampled::Sampled`",
     ),
     (
         &["learning", "neural", "policy", "reward", "training", "rl", "reinforcement"],
-        "nothing is trained; what adapts are the parameters of a model: `law.adaptive`",
+        "nothing is trained. Nearest: `law.adaptive`, which adapts the parameters of a model",
     ),
     (
         &["pid", "pd", "pi", "lqr", "lqg", "computed_torque", "inverse_dynamics", "feedforward"],
-        "of a robot whose parameters are known `law.known` makes z be followed with a damping K, which `law.adaptive` does of others",
+        "laws follow the reference velocity z. Nearest: `law.known` for a robot whose parameters are known, `law.adaptive` for others, each with a damping K",
     ),
     (
         &["impedance", "admittance", "compliance", "stiffness", "spring", "springs"],
-        "virtual springs push as `[[external_wrenches]]`; how far agents give way when they are pushed is `manipulability_gain`",
+        "no law shapes an impedance. Nearest: virtual springs, `[[external_wrenches]]`, and `manipulability_gain`, by which agents give way when they are pushed",
     ),
     (
         &["sliding_mode", "sliding", "smc", "h_infinity", "robust", "supertwisting"],
-        "what jumps is left to leaders: `reference.leader` has a set-valued sign, and `law.known` or `law.adaptive` follow what it asks for",
+        "no tracking law switches. Nearest: `reference.leader`, which has a set-valued sign; `law.known` or `law.adaptive` follow what it asks for",
     ),
     (
         &["wind", "weather", "aerodynamics", "drag", "waves"],
-        "what acts from outside is given as a course in time or drawn: `[[external_wrenches]]`",
+        "there is no air and no sea. Nearest: `[[external_wrenches]]`, which act from outside as a course in time or drawn",
+    ),
+    (
+        &["flocking", "flock", "boids", "repulsion", "cohesion"],
+        "agents do not repel each other. Nearest: they agree (`reference.consensus`), vehicles and rotorcraft up to a `target` of each, or follow a \
+         leader (`reference.leader`)",
     ),
 ];
 
@@ -148,7 +154,7 @@ pub(super) fn beyond(word: &str) -> Option<String> {
         return Some(name.to_owned());
     }
     let nearest = found(WISHES, &word)?;
-    Some(format!("that is not modelled, see Limits in the README; the nearest there is: {nearest}"))
+    Some(format!("that is not modelled (see Limits in the README, and What is not modelled in the book): {nearest}"))
 }
 
 /// What stands between the words of a key.
@@ -183,7 +189,7 @@ mod tests {
             ("camera-rate", "`[control]`"),
         ] {
             let said = beyond(word).unwrap_or_default();
-            assert!(said.contains("not modelled, see Limits") && said.contains(part), "{word}: {said}");
+            assert!(said.contains("not modelled (see Limits") && said.contains(part), "{word}: {said}");
         }
         for (word, part) in [
             ("quadrotor", "`robot.rotorcraft`"),
@@ -197,11 +203,22 @@ mod tests {
             let said = beyond(word).unwrap_or_default();
             assert!(!said.contains("not modelled") && said.contains(part), "{word}: {said}");
         }
-        for word in ["unicycle", "auv", "quadruped", "pid", "computed_torque", "impedance", "sliding_mode", "rl"] {
-            assert!(beyond(word).is_some_and(|said| said.contains("the nearest there is: ")), "{word}");
+        for word in [
+            "unicycle",
+            "auv",
+            "quadruped",
+            "base",
+            "pid",
+            "computed_torque",
+            "impedance",
+            "sliding_mode",
+            "rl",
+            "flocking",
+        ] {
+            assert!(beyond(word).is_some_and(|said| said.contains(". Nearest: ")), "{word}");
         }
         assert!(beyond("gravity_direction").is_some_and(|said| said.starts_with("gravity is said of each robot")));
-        for word in ["", "grounds", "databases", "cameraman", "base", "weight"] {
+        for word in ["", "grounds", "databases", "cameraman", "basement", "weight"] {
             assert_eq!(beyond(word), None, "{word}");
         }
     }

@@ -75,7 +75,7 @@ pub struct WaveFile {
 #[serde(deny_unknown_fields)]
 pub struct TargetCsvFile {
     /// The CSV file, beside the scenario file or in `inputs` beside it. Its first line names its columns: `t_s`, rising, and one
-    /// for each axis by its name; of the tip of a robot `x`, `y`, `z`, and of its orientation `q_x`, `q_y`,
+    /// for each axis by its name; of the end-effector of a robot `x`, `y`, `z`, and of its orientation `q_x`, `q_y`,
     /// `q_z`, `q_o`; of the quaternion of a spacecraft `x`, `y`, `z` and, for
     /// the scalar part, `o`.
     pub file: At<String>,

@@ -30,7 +30,7 @@ pub(super) const CASES: &[Case] = &[
     ("[goal]", "[gaol]",
         "test.toml:37:2: unknown key `gaol`", "did you mean `goal`?"),
     ("weight = 1.0", "obstacles = []",
-        "test.toml:28:1: unknown key `obstacles`", "not modelled, see Limits in the README; the nearest there is: a `target` keeps vehicles and rotorcraft apart"),
+        "test.toml:28:1: unknown key `obstacles`", "not modelled (see Limits in the README, and What is not modelled in the book): robots pass through each other, and there are no obstacles. Nearest: a `target` keeps vehicles and rotorcraft apart"),
     ("end_s = 10\n", "",
         "test.toml:4:1: the key `end_s` is missing", "`end_s = 10`"),
     ("end_s = 10", "end_s = \"ten\"",

@@ -47,6 +47,10 @@ fn what_is_missed_because_of_another_mistake_is_not_told() {
     assert_eq!(all(&[("name = \"cart\"\n", "")]).len(), 1);
     let found = all(&[("name = \"cart\"\n", ""), ("weight = 1.0", "wait = 1.0")]);
     assert!(found.len() == 2 && found[0].contains("`name` is missing") && found[1].contains("`wait`"), "{found:?}");
+    // Of a file that wishes for what is not modelled, the wish.
+    let error = read("format = 2\ntitle = \"test\"\n[obstacles]\nradius_m = 1\n").unwrap_err();
+    assert!(error.to_string().contains("unknown key `obstacles`"), "{error}");
+    assert_eq!(error.related().into_iter().flatten().count(), 0);
 }
 
 #[test]

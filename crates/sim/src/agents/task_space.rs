@@ -106,8 +106,12 @@ impl TipSetup {
 
 impl Law for TaskSpaceLaw {
     fn words(&self) -> LawWords {
-        let name = if self.by_velocity { "the law for a tip with a measured velocity" } else { "the law for a tip" };
-        LawWords { name, made_for: "planar arms, and for robots from a URDF with a tip" }
+        let name = if self.by_velocity {
+            "the law for an end-effector with a measured velocity"
+        } else {
+            "the law for an end-effector"
+        };
+        LawWords { name, made_for: "planar arms, and for robots from a URDF with an end-effector" }
     }
 
     fn interface(&self, robot: &RobotSetup) -> Option<Interface> {

@@ -205,7 +205,7 @@ pub enum SetupError {
     /// The reference dynamics do not go with what is exchanged.
     #[error("{reference} does not go with agents that exchange {}", exchange.words().join(" and "))]
     ReferenceExchange {
-        /// They, in words.
+        /// Name of the reference dynamics.
         reference: &'static str,
         /// What is exchanged.
         exchange: Exchange,
@@ -213,7 +213,7 @@ pub enum SetupError {
     /// Reference dynamics from outside that are not made for their agents.
     #[error("{reference}: {error}")]
     ReferenceShape {
-        /// They, in words.
+        /// Name of the reference dynamics.
         reference: &'static str,
         /// How many there are, and how many there must be.
         error: LengthError,
@@ -221,7 +221,7 @@ pub enum SetupError {
     /// Reference dynamics from outside with a set-valued sign.
     #[error("{reference} has a set-valued sign, which is settled for followers of a leader only")]
     SignWithoutLeader {
-        /// They, in words.
+        /// Name of the reference dynamics.
         reference: &'static str,
     },
     /// A gain of one agent.
@@ -402,9 +402,9 @@ pub enum SetupError {
     },
     /// A null-space term without redundant joints, or redundant joints without one.
     #[error("agent `{agent}`: {}", if *has {
-        "a null-space term is for more joints than coordinates of the tip"
+        "a null-space term is for more joints than coordinates of the end-effector"
     } else {
-        "more joints than coordinates of the tip need a null-space term"
+        "more joints than coordinates of the end-effector need a null-space term"
     })]
     NullSpace {
         /// The agent.
@@ -414,7 +414,7 @@ pub enum SetupError {
     },
     /// The law with a measured velocity of the tip, for a pose or for joints to spare.
     #[error(
-        "agent `{agent}`: with a measured velocity of the tip the law is derived for positions of as many coordinates as there are joints"
+        "agent `{agent}`: with a measured velocity of the end-effector the law is derived for positions of as many coordinates as there are joints"
     )]
     TipVelocity {
         /// The agent.
@@ -466,7 +466,7 @@ pub enum SetupError {
         "{} is {value}, but {}", .quantity.words(),
         match (*.filtered, *.quantity) {
             (true, _) => "velocities come from filtered differences of positions",
-            (false, VelocityQuantity::TipNoise) => "no law measures the velocity of a tip",
+            (false, VelocityQuantity::TipNoise) => "no law measures the velocity of an end-effector",
             (false, _) => "no law measures velocities",
         }
     )]

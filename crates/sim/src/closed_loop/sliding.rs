@@ -1,4 +1,4 @@
-//! Who sets the set-valued sign in continuous time.
+//! Sets the set-valued sign in continuous time.
 //!
 //! With s (ṡ for (119)) held over a period h the sign ς moves what it is taken of by −hγ L ς, where L is the Laplacian of the
 //! followers with their weights to the leader (`forwardstep_core::reference::Sliding`). The value that suits the end of the

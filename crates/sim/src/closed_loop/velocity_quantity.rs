@@ -27,7 +27,7 @@ impl VelocityQuantity {
     pub fn words(self) -> &'static str {
         match self {
             VelocityQuantity::Noise => "the noise of velocities",
-            VelocityQuantity::TipNoise => "the noise of the velocities of tips",
+            VelocityQuantity::TipNoise => "the noise of the velocities of end-effectors",
             VelocityQuantity::Step => "the step of velocities",
             VelocityQuantity::CutOff => "the cut-off of the filter of velocities",
         }

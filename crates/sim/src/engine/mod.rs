@@ -6,12 +6,12 @@
 //! - `history`: what was transmitted, as self-contained polynomial pieces.
 //! - `system`: the right-hand side, as the integrator sees it.
 //! - `timeline`: switches, delay jumps, and the arrival of their images, in order.
-//! - `hearing`: the weighted sums of delayed messages at one instant.
+//! - `delayed_inputs`: the weighted sums of delayed messages at one instant.
 //! - `kernels`: loops over columns.
 //! - `integrator`: the stepping itself, and why it ends (`integrator/failure`).
 //! - `stiffness`: how fast the fastest motion is.
 //! - `forcing`: what enters as a function of time, and how long a step may be that sees it.
-//! - `radio`: what is sent and heard at the samples of digital controllers.
+//! - `sampled_channel`: what is sent and heard at the samples of digital controllers.
 
 mod delayed_inputs;
 mod forcing;

@@ -12,7 +12,7 @@ const MOST_BITS: usize = 64;
 
 /// The union of the graphs of a run of phases.
 ///
-/// An edge counts once however many phases have it. The graphs may be as many as the phases: then an union has few of their
+/// An edge counts once however many phases have it. The graphs may be as many as the phases: then a union has few of their
 /// edges, and what is looked at is that.
 pub(super) struct Union {
     agents: usize,

@@ -74,7 +74,10 @@ fn held(left: f64, scale: f64, once: bool) -> String {
             true => format!(", where the leader moves and agents start away from it by {} at most", rounded(scale)),
             false => String::new(),
         };
-        format!("; held in between, it leaves an error of about {}{beside}", rounded_up(left))
+        format!(
+            "; held in between, it leaves an error q_i − q_0 of about {} in units of the axes{beside}",
+            rounded_up(left)
+        )
     } else {
         String::new()
     };

@@ -139,7 +139,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             "the scalar part of the error starts at zero: both ways are equally long, and rounding chooses between them"
                 .into()
         }
-        KindEvidence::NoTip => "the law has no tip of this robot".into(),
+        KindEvidence::NoTip => "the law has no end-effector of this robot".into(),
         KindEvidence::LengthsOutsideRegressor(Uncertain::Tool) => {
             "only the tool is uncertain, which the dynamics do not contain".into()
         }
@@ -193,7 +193,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
             agent.name
         ),
         KindEvidence::SafeCommand => {
-            "where it does not, a safe command stands in the place of the law, and the run goes on".into()
+            "otherwise a safe command replaces the law's, and the run goes on".into()
         }
         KindEvidence::NoSpacecraft => "this is no spacecraft".into(),
     }

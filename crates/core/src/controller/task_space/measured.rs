@@ -159,7 +159,7 @@ where
         let law = &self.0;
         law.check()?;
         // A pose and joints to spare have no place here.
-        LengthError::check("coordinates of the tip", law.tip.joints(), law.tip.axes())?;
+        LengthError::check("coordinates of the end-effector", law.tip.joints(), law.tip.axes())?;
         LengthError::check("rows of the Jacobian", law.tip.axes(), law.tip.rows())?;
         LengthError::check("x", law.tip.axes(), at.x.len())?;
         LengthError::check("dx", law.tip.axes(), dx.len())?;

@@ -23,7 +23,7 @@ const JOINTS_OF_POSE: usize = 6;
 pub enum TipError {
     /// More or fewer joints than coordinates.
     #[error(
-        "{joints} joints move and {coordinates} coordinates of the tip are to be controlled; task-space control needs as many \
+        "{joints} joints move and {coordinates} coordinates of the end-effector are to be controlled; task-space control needs as many \
          joints as coordinates (a redundant Jacobian has no inverse): lock joints or choose other coordinates"
     )]
     Size {
@@ -34,7 +34,7 @@ pub enum TipError {
     },
     /// No joint is left for a null-space term.
     #[error(
-        "{joints} joints move and {coordinates} coordinates of the tip are to be controlled; a null-space term needs more joints \
+        "{joints} joints move and {coordinates} coordinates of the end-effector are to be controlled; a null-space term needs more joints \
          than coordinates, and one coordinate at least"
     )]
     NotRedundant {
@@ -56,7 +56,7 @@ pub enum TipError {
     #[error("a pose has the coordinates x, y, z in this order, not others")]
     PoseCoordinates,
     /// More joints than working memory is set aside for.
-    #[error("{joints} joints move, more than the {most} that the kinematics of a tip are computed for")]
+    #[error("{joints} joints move, more than the {most} that the kinematics of an end-effector are computed for")]
     TooManyJoints {
         /// Moving joints.
         joints: usize,
@@ -70,7 +70,7 @@ pub enum TipError {
         coordinate: usize,
     },
     /// A joint does not move the point.
-    #[error("joint {joint} does not carry the tip; lock it or choose a tip behind it")]
+    #[error("joint {joint} does not carry the end-effector; lock it or choose an end-effector behind it")]
     Beside {
         /// The joint, from zero.
         joint: usize,

@@ -168,7 +168,7 @@ fn told(tried: &Tried) -> Status {
     if tried.works {
         return Status::Fine;
     }
-    remark("no trial did what it should; it is written with the usual gains, so that you can look at it");
+    remark("no trial did what it should; it is written with the default gains, so that you can look at it");
     Status::Missed
 }
 

@@ -34,7 +34,7 @@ const SHORT_S: f64 = 1e-4;
 /// The robot itself makes the closed loop stiff where its damping has this much of the fastest rate, which is known to a factor of two.
 const OWN: f64 = 0.3;
 
-/// The gains that are tried, one after the other: the usual ones, faster learning, learning from nearby, slower gains, no learning at all, slower
+/// The gains that are tried, one after the other: the default ones, faster learning, learning from nearby, slower gains, no learning at all, slower
 /// without learning, which takes the least torque.
 const TUNINGS: [Tuning; 7] = [
     Tuning::USUAL,

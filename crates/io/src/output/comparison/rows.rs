@@ -372,7 +372,7 @@ fn work(s: &Subject<'_>) -> Result<Cell, Cell> {
 fn messages(s: &Subject<'_>) -> Result<Cell, Cell> {
     let links = Link::all(&s.setup().network, &s.run.record.outcome.ending);
     if links.is_empty() {
-        return Err(Cell::none("messages are exchanged without end: no link carries packets"));
+        return Err(Cell::none("messages flow continuously; there are no packets to count"));
     }
     let (sent, lost) = links.iter().fold((0, 0), |(sent, lost), link| (sent + link.sent, lost + link.lost));
     Ok(Cell::number(sent as f64, "").and(&format!("{lost} lost")))

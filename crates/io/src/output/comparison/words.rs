@@ -129,8 +129,10 @@ pub(super) fn network(setup: &Setup) -> String {
     kinds.sort_unstable();
     kinds.dedup();
     let late = network.used_delays().map(|k| network.delays[k].max_s()).fold(0.0, f64::max);
+    let is_one = network.used_delays().all(|k| network.delays[k].is_constant() && network.delays[k].max_s() >= late);
+    let size = if is_one { " of" } else { ", at most" };
     let late =
-        if late > 0.0 { format!("; {}, at most {} s", kinds.join(", "), number(late)) } else { "; no delay".into() };
+        if late > 0.0 { format!("; {}{size} {} s", kinds.join(", "), number(late)) } else { "; no delay".into() };
     graphs + &late
 }
 

@@ -80,7 +80,7 @@ fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped {
             (fact("Clipped", html! {
                 @if torque + rate == 0 && names::limits_by_itself(setup) { "none of " (samples) " samples by the controllers; what wheels and rotors limit is not counted" }
-                @else if torque + rate == 0 { "none of " (samples) " samples: the run is that without limits" }
+                @else if torque + rate == 0 { "none of " (samples) " samples, so the limits changed nothing" }
                 @else { (torque) " by limits of torque and " (rate) " by limits of rate, of " (samples) " samples" }
             }))
         }

@@ -1,15 +1,21 @@
 //! What was predicted for s ≡ 0 beside what was observed.
 
 use forwardstep_sim::Setup;
-use forwardstep_sim::recording::Signal;
+use forwardstep_sim::recording::{Ending, Signal};
 use maud::{Markup, html};
 
+use super::super::conclusion::LEFT_OVER;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
-use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate};
+use super::super::prediction::{CourseFound, NEAR, PredictedCourse, PredictedRate, Predictions};
 use super::super::record::RunRecord;
+use super::sections::last_tracking_error;
 use super::text::{self, number, prose};
 
+/// What is left is due to s where it is so many times what would be left without.
+const FAR_MORE: f64 = 10.0;
+/// Less of what was at the start is as good as nothing.
+const NOTICED: f64 = 1e-6;
 /// More rows would only repeat themselves.
 const MOST_TORQUES: usize = 24;
 const MOST_AXES: usize = 32;
@@ -37,8 +43,8 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 @match &prediction.rate {
                     PredictedRate::NoneSince(reason) => p.note { "The rate is not predicted, since " (prose(reason)) "." },
                     PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => p.note {
-                        "Rate: " (number(*rate_per_s)) " 1/s. A period of " (number(*period_s)) " s leaves " (number(*factor))
-                        " of a disagreement, within " (number(100.0 * wavers)) " % over " (periods) " periods."
+                        "Rate: " (number(*rate_per_s)) " 1/s. Every " (number(*period_s)) " s the disagreement " @if *factor < 1.0 { "shrinks" } @else { "grows" }
+                        " to " (number(100.0 * factor)) " % (checked over " (periods) " periods, to " (number(100.0 * wavers)) " %)."
                     },
                     PredictedRate::Roots { root_per_s: [re, im], multiplicity, correction_per_s, backward_error, excited, settled_s } => p.note {
                         "Rate: rightmost characteristic root beside zero " (number(*re)) @if *im != 0.0 { " ± " (number(*im)) " i" } " 1/s"
@@ -52,9 +58,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 @for sentence in prediction.guarantee.iter().flat_map(|guarantee| guarantee.sentences(setup.time.end_s)) {
                     p.note { "Guaranteed: " (prose(&sentence)) "." }
                 }
-                @if let Some(s) = metrics.final_tracking_error.filter(|s| *s > 0.0) {
-                    p.note { "Tracking errors at the last row are " (number(s)) " at most; what they do to the course is not predicted." }
-                }
+                @if let Some(sentences) = tracking_error(record, metrics) { p.note { (sentences) } }
             }
             @if let Some(course) = prediction.course().filter(|course| !course.peak_torques.is_empty()) {
                 (torques(setup, course, metrics))
@@ -94,18 +98,67 @@ fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, 
     rows
 }
 
+/// What s at the end does: that it is what is left, where without it far less would be; else that nothing is known of it.
+fn tracking_error(record: &RunRecord<'_>, metrics: &Metrics) -> Option<String> {
+    let setup = record.setup;
+    let (agent, axis, s) = last_tracking_error(record).filter(|(.., s)| *s > 0.0)?;
+    let unit = text::unit(&names::unit(setup, agent, Signal::TrackingError, axis));
+    let (who, joint) = (names::agent_name(setup, agent), names::axis_words(setup, agent, axis));
+    let sized = |value: f64, unit: &str| format!("{} {unit}", number(value)).trim_end().to_owned();
+    let size = format!("{} ({who}, {joint})", sized(s, &unit));
+    let unknown = || {
+        Some(format!(
+            "Tracking errors at the last row are at most {size}; what they do to the course is not predicted."
+        ))
+    };
+    let course = record.prediction.as_ref().and_then(Predictions::course);
+    let (Some(course), Disagreement::Measured { last, .. }) = (course, metrics.disagreement) else { return unknown() };
+    let without = course.disagreement.last().copied().unwrap_or(f64::NAN);
+    let is_far = last > FAR_MORE * without && last > NOTICED * metrics.disagreement.initial().unwrap_or(f64::NAN);
+    let is_left = record.outcome.ending == Ending::Completed && is_far && s > LEFT_OVER * last;
+    if !is_left {
+        return unknown();
+    }
+    let adapts = course.peak_torques.iter().any(|peak| peak.agent == agent && peak.estimate_off > 0.0);
+    let why = if adapts && record.verdicts.worst().is_fine() {
+        ": estimates have not settled. The theorem gives s → 0 without a rate"
+    } else {
+        ""
+    };
+    let without = sized(without, &names::gap_unit(setup));
+    if setup.control.is_some() {
+        return Some(format!(
+            "At the end s is still {size}{why}. Without s, and in continuous time, {without} would be left."
+        ));
+    }
+    let moved = if is_moved(course, metrics, last) { "; it also moved the value agreed upon" } else { "" };
+    Some(format!(
+        "At the end s is still {size}{why}. Without s {without} would be left: s, not the network, keeps the agents apart{moved}."
+    ))
+}
+
+/// Whether the agents agree on a value beside the predicted one, by more than they are apart.
+fn is_moved(course: &CourseFound, metrics: &Metrics, apart: f64) -> bool {
+    let (Some(within), Some(means)) = (&course.within, &metrics.final_means) else { return false };
+    within.iter().zip(means).any(|([low, high], mean)| *mean < low - apart || *mean > high + apart)
+}
+
 /// The value agreed upon on every axis, where it is bounded and reached, beside the mean of the last positions.
 fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
     let Some(within) = course.within.as_ref().filter(|_| course.reached) else { return Vec::new() };
     let mean = |axis: usize| metrics.final_means.as_ref().and_then(|means| means.get(axis)).copied();
     let agreed = if metrics.disagreement.is_agreement() { "" } else { " (mean, not agreed)" };
     let for_zero = if course.moved_by_s { " with s ≡ 0" } else { "" };
+    let unit = |axis: usize| match text::unit(&names::unit(setup, 0, Signal::Position, axis)) {
+        none if none.is_empty() => none,
+        unit => format!(" {unit}"),
+    };
     let row = |(axis, [low, high]): (usize, &[f64; 2])| {
         let half = 0.5 * (high - low);
         (
             format!("{}, {}", names::value_words(setup), names::axis_words(setup, 0, axis)),
-            format!("{} ± {}{for_zero}", number(low + half), number(half)),
-            mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{agreed}", number(mean))),
+            format!("{} ± {}{}{for_zero}", number(low + half), number(half), unit(axis)),
+            mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{}{agreed}", number(mean), unit(axis))),
         )
     };
     within.iter().enumerate().take(MOST_AXES).map(row).collect()
@@ -115,7 +168,11 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
     let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
     html! {
         div.card.scroll {
-            h3 { "Peak torque" " " span.by { "predicted with the true parameters along the reference; an indication where estimates start within 20 % of them" } }
+            h3 { "Peak torque" " " span.by {
+                "predicted with the true parameters along the reference; "
+                @if course.peak_torques.iter().all(|peak| peak.estimate_off > NEAR) { "estimates start farther off than 20 %, so the torque can be another" }
+                @else { "an indication where estimates start within 20 % of them" }
+            } }
             table.numbers {
                 thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th { "estimate starts off by" } } }
                 tbody { @for peak in course.peak_torques.iter().take(MOST_TORQUES) {

@@ -1,6 +1,8 @@
 //! The parts of the page that are words and tables.
 
-use forwardstep_check::Answer;
+use std::collections::BTreeSet;
+
+use forwardstep_check::{Answer, Hypothesis, Report, Rigour};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::recording::{Drive, Ending, Signal};
@@ -11,6 +13,7 @@ use super::super::ending::ending_sentence;
 use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
+use super::super::table::Table;
 use super::text::{self, number, prose};
 
 /// More rows would only repeat themselves.
@@ -73,12 +76,13 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                                     }
                                     p.origin {
                                         code { (hypothesis.id.name()) } " · " (hypothesis.place()) " · "
-                                        (hypothesis.source().words()) " · " (hypothesis.rigour().word())
+                                        (hypothesis.source().words()) " · " span title=(hypothesis.rigour().meaning()) { (hypothesis.rigour().word()) }
                                     }
                                 }
                             }
                         }
                     }
+                    @if !report.hypotheses.is_empty() { p.note { "How answers were found – " (ways(report)) "." } }
                 }
                 div.card {
                     h3 { "Happened" }
@@ -104,6 +108,12 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
             }
         }
     }
+}
+
+/// The words for how answers were found, with what each of them means.
+fn ways(report: &Report) -> String {
+    let ways: BTreeSet<Rigour> = report.hypotheses.iter().map(Hypothesis::rigour).collect();
+    ways.iter().map(|way| format!("{}: {}", way.word(), way.meaning())).collect::<Vec<_>>().join("; ")
 }
 
 pub(super) fn answer_style(answer: Answer) -> (&'static str, &'static str) {
@@ -148,7 +158,13 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
             (fact("Speed", html! {
                 (quantity(at.value, &unit_at(setup, Signal::Velocity, at.agent, at.axis))) " at most ("
                 (names::agent_name(setup, at.agent)) ", " (names::axis_words(setup, at.agent, at.axis))
-                ", t = " (number(at.t_s)) " s) at recorded rows, " (number(speed.last)) " at the end"
+                ", t = " (number(at.t_s)) " s) at recorded rows, " (quantity(speed.last, &shared_unit(setup, Signal::Velocity))) " at the end"
+            }))
+        }
+        @if let Some((agent, axis, s)) = last_tracking_error(record) {
+            (fact("Tracking error", html! {
+                "|s| is " (quantity(s, &unit_at(setup, Signal::TrackingError, agent, axis))) " at the end ("
+                (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ")"
             }))
         }
         (fact("Limits", html! {
@@ -165,6 +181,20 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
             }))
         }
     }
+}
+
+/// The agent and the axis with the largest |s| at the last row, and its size; nothing where s is not recorded or not finite.
+pub(super) fn last_tracking_error(record: &RunRecord<'_>) -> Option<(usize, usize, f64)> {
+    let table = Table::new(record.setup, &record.outcome.recording);
+    let last = table.axes(Signal::TrackingError).filter_map(|(agent, axis, s)| Some((agent, axis, s.last()?.abs())));
+    last.filter(|(.., s)| s.is_finite()).reduce(|best, next| if next.2 > best.2 { next } else { best })
+}
+
+/// The unit of a signal that all axes of all agents share; empty where they differ.
+fn shared_unit(setup: &Setup, signal: Signal) -> String {
+    let axes = |agent: usize| (0..setup.agents[agent].robot.axes.len()).map(move |axis| (agent, axis));
+    let units = (0..setup.agents.len()).flat_map(axes).map(|(agent, axis)| unit_at(setup, signal, agent, axis));
+    names::shared(units).unwrap_or_default()
 }
 
 /// What remains at the end, by name.

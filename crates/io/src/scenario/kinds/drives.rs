@@ -132,7 +132,7 @@ fn widths(file: &Option<At<AxisValues>>, axes: usize) -> Vec<f64> {
     each(file.as_ref(), &vec![WIDTH; axes])
 }
 
-/// One number for each axis, or the usual ones.
+/// One number for each axis, or the default ones.
 pub(super) fn each(file: Option<&At<AxisValues>>, usual: &[f64]) -> Vec<f64> {
     file.map_or_else(|| usual.to_vec(), |place| place.value.each(usual.len()))
 }

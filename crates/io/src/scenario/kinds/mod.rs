@@ -267,7 +267,7 @@ impl Kinds {
         schema
     }
 
-    /// The robot at `place` in the tree of a file, with the key of its usual law.
+    /// The robot at `place` in the tree of a file, with the key of its default law.
     pub(super) fn robot(&self, place: ValueDe<'_, '_>) -> Result<(&'static str, Box<dyn RobotKind>), Fault> {
         let (key, robot) = chosen(self.robots.iter().map(|entry| &entry.table), place)?;
         let entry = self.robots.iter().find(|entry| entry.table.key == key);

@@ -63,12 +63,12 @@ enum TipProblem {
     PoseNullSpace,
     /// A null-space term of a planar arm.
     #[error(
-        "a planar arm has as many joints as its tip has coordinates; `null_space` is for redundant robots from a URDF"
+        "a planar arm has as many joints as its end-effector has coordinates; `null_space` is for redundant robots from a URDF"
     )]
     PlanarNullSpace,
     /// A measured velocity of a pose, or of redundant joints.
     #[error(
-        "with a measured velocity of the tip the law is derived for positions of as many coordinates as there are joints"
+        "with a measured velocity of the end-effector the law is derived for positions of as many coordinates as there are joints"
     )]
     MeasuredVelocity,
     /// Bounds beside a full matrix.
@@ -101,13 +101,13 @@ impl Mistake for TipProblem {
     }
 }
 
-/// The tip follows the target with uncertain lengths and parameters, without its velocity: (80) to (82) of the paper.
+/// The end-effector follows the target with uncertain lengths and parameters, without its velocity: (80) to (82) of the paper.
 #[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TaskSpaceFile {
     /// The end-effector of a robot from a URDF. A planar arm has one of its own.
     pub end_effector: Option<At<TipFile>>,
-    /// Where the velocity of the tip comes from. Default: there is none, and z is integrated as in Theorem 6.
+    /// Where the velocity of the end-effector comes from. Default: there is none, and z is integrated as in Theorem 6.
     pub tip_velocity: Option<At<TipVelocityFile>>,
     /// The gain K. Default: a bandwidth of 20 1/s for a URDF, 20 otherwise.
     pub damping: Option<DampingFile>,
@@ -117,18 +117,18 @@ pub struct TaskSpaceFile {
     pub estimate_start: Option<EstimateStartFile>,
     /// Bounds that the estimate of the parameters is kept within. Default: none.
     pub estimate_bounds: Option<EstimateBoundsFile>,
-    /// The gain K* on the error of the tip in the reference dynamics: a number, a diagonal or a matrix. Default: 20.
+    /// The gain K* on the error of the end-effector in the reference dynamics: a number, a diagonal or a matrix. Default: 20.
     pub task_gain: Option<At<GainFile>>,
     /// The gain k_o on Δq_v of an end-effector whose orientation follows too. It is one number: with a matrix no energy is left to
     /// fall. Default: 20.
     #[schemars(with = "Option<Positive>")]
     pub attitude_gain: Option<At<f64>>,
-    /// What joints beyond the coordinates of the tip do: not from the paper.
+    /// What joints beyond the coordinates of the end-effector do: not from the paper.
     pub null_space: Option<At<NullSpaceFile>>,
     /// The gain κ with which that error enters the torque. Default: 5.
     #[schemars(with = "Option<Positive>")]
     pub torque_share: Option<At<f64>>,
-    /// The rate α at which the reference velocity forgets, in 1/s; with a measured velocity of the tip, the rate at which its error
+    /// The rate α at which the reference velocity forgets, in 1/s; with a measured velocity of the end-effector, the rate at which its error
     /// vanishes. Default: 3.
     #[schemars(with = "Option<Positive>")]
     pub reference_gain_per_s: Option<At<f64>>,
@@ -181,7 +181,7 @@ pub enum TipVelocityFile {
     Measured,
 }
 
-/// The posture that redundant joints keep to where the tip leaves them free.
+/// The posture that redundant joints keep to where the end-effector leaves them free.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NullSpaceFile {
@@ -208,7 +208,7 @@ pub enum CoordinateFile {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum UncertainFile {
-    /// From the last joint to the tip.
+    /// From the last joint to the end-effector.
     Tool,
     /// From each joint to the next as well, for the Jacobian; the regressor of the dynamics keeps the geometry of the URDF, so no
     /// theorem covers those of them that enter it: see what `check` says.
@@ -232,7 +232,7 @@ impl LawKind for TaskSpaceFile {
     fn table() -> LawTable {
         LawTable {
             key: "task_space",
-            description: "The tip of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.",
+            description: "The end-effector of a robot follows a target, with uncertain lengths and without its velocity: (80) to (82) of the paper.",
             made_for: "planar arms and robots from a URDF",
         }
     }

@@ -23,7 +23,7 @@ const ADAPTATION_GAIN: f64 = 0.2;
 const RATE_BANDWIDTH_PER_S: f64 = 30.0;
 const YAW_GAIN_PER_S: f64 = 1.0;
 const APPROACH_S: f64 = 0.1;
-/// The usual floor of the thrust, as a part of the weight.
+/// The default floor of the thrust, as a part of the weight.
 const FLOOR: f64 = 0.1;
 
 /// A vehicle with one thrust. Its third axis points down.

@@ -53,7 +53,7 @@ pub struct Template {
 }
 
 impl Template {
-    /// Four agents with this robot, or one that has a target of its own, and what is usual beside it.
+    /// Four agents with this robot, or one that has a target of its own, and defaults beside it.
     pub fn new(robot: RobotTemplate) -> Self {
         let (order, exchange, agents) = match robot.task {
             TaskTemplate::Agree { orders: [lowest, _], exchange, .. } => (lowest.max(2), exchange, 4),
