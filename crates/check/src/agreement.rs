@@ -132,7 +132,7 @@ pub enum NoPrediction {
     #[error("under backstepping tracking errors move it")]
     Backstepping,
     /// Reference dynamics from outside: nothing is known of what they conserve.
-    #[error("the reference dynamics are not among those that come with forwardstep")]
+    #[error("the reference dynamics are not those of a design of the paper")]
     Own,
     /// There is no single value.
     #[error(

@@ -150,6 +150,8 @@ fn attack_says_why_a_scenario_cannot_be_attacked() {
         ("theorem-8", "everybody follows a leader"),
         ("through-waypoints", "agents follow targets"),
         ("fixed.toml", "it leaves nothing open"),
+        // A table says when its graphs change.
+        ("replayed-draws", "it leaves nothing open"),
         ("same.toml", "agents start together"),
         ("nowhere.toml", "cannot read"),
         ("a2", "there is no scenario `a2`"),

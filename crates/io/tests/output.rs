@@ -168,8 +168,9 @@ fn the_page_says_where_every_hypothesis_is_asked_for_and_whose_it_is() {
     write_run(&run, &record(&setup, &outcome, &report), Options::default()).unwrap();
     let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
     for hypothesis in &report.hypotheses {
-        let (id, rigour) = (hypothesis.id.name(), hypothesis.rigour().word());
-        let origin = format!("<code>{id}</code> · {} · {} · {rigour}", hypothesis.place(), hypothesis.source().words());
+        let (id, rigour) = (hypothesis.id.name(), hypothesis.rigour());
+        let way = format!("<span title=\"{}\">{}</span>", rigour.meaning(), rigour.word());
+        let origin = format!("<code>{id}</code> · {} · {} · {way}", hypothesis.place(), hypothesis.source().words());
         assert!(html.contains(&origin), "{origin}");
     }
     assert!(!report.hypotheses.is_empty() && html.contains(&report.theorem.source().words()));

@@ -4,6 +4,7 @@
 use std::ops::ControlFlow;
 
 use forwardstep_check::{Injection, InjectionBalance, InjectionWatch};
+use forwardstep_io::output::Deployment;
 use forwardstep_io::scenario::open_scenario;
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate, simulate_watched};
@@ -96,6 +97,14 @@ fn prop_sampled_scenarios_are_as_far_from_continuous_ones_as_their_period() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn regress_modes_that_do_not_grow_within_a_run_are_no_limit_of_its_period() {
+    // It was measured to work up to 1.4 s.
+    let setup = open_scenario("theorem-7").unwrap().setup;
+    let rule = Deployment::default().rule(&setup).unwrap();
+    assert!(rule.linearised && rule.period_s > 0.3, "{rule:?}");
 }
 
 /// A sampled agent sets its sign by itself, the continuous ones set theirs together, and arms meet the sign while their estimates

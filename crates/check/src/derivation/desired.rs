@@ -89,10 +89,17 @@ pub(super) fn parts(desired: &Desired, upper: &Upper, notation: &Notation, secti
         .formula(Formula::equal(Symbol::new("𝒵"), notation.form(&in_x)), "(43)")
         .formula(Formula::equal(Symbol::new("𝓕"), notation.form(&of_s)), "(43)")
         .words(why)
-        .words(if desired.protocol.is_some() {
-            "f is the nonlinear protocol of the scenario. Its arguments are those that 𝒵 has: derivatives of z in it are those of x less those of s, so that it \
-             belongs to 𝓕 too; it holds none of s above the one before the highest."
-        } else {
-            ""
+        .words(match (&desired.protocol, desired.written) {
+            (None, _) => "",
+            (Some(_), WrittenIn::Measured) if upper.reference_order == 1 => {
+                "f is the nonlinear protocol of the scenario. Its arguments are those that 𝒵 has: all are measured, and none holds s."
+            }
+            (Some(_), WrittenIn::X) => {
+                "f is the nonlinear protocol of the scenario. Its arguments are those that 𝒵 has: derivatives of x, and none holds s."
+            }
+            (Some(_), WrittenIn::Measured | WrittenIn::Z) => {
+                "f is the nonlinear protocol of the scenario. Its arguments are those that 𝒵 has: derivatives of z in it are those of x less those of s, so \
+                 that it belongs to 𝓕 too; it holds none of s above the one before the highest."
+            }
         })
 }

@@ -157,11 +157,14 @@ impl Upper {
     }
 
     /// The reduction step by step, each absorbing one derivative of s into z^(ℓ−1), z^(ℓ−2), …, until no higher derivative of it
-    /// is left than this.
+    /// is left than this, or a step leaves as many as there were: of dynamics in x the coefficients bring them back.
     pub fn steps(&self, aim: usize) -> Vec<Reduced> {
         let mut steps: Vec<Reduced> = Vec::new();
         for absorbed in 0..=self.reference_order {
             let Some(reduced) = self.reduced(self.derivatives(absorbed)) else { break };
+            if steps.last().is_some_and(|last| reduced.derivatives >= last.derivatives) {
+                break;
+            }
             let done = reduced.derivatives <= aim;
             steps.push(reduced);
             if done {

@@ -4,6 +4,7 @@ use forwardstep_core::robot::SMOOTHING_LOSS;
 use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::FollowingDesign;
+use forwardstep_sim::reference::Desired;
 use num_traits::Zero;
 
 use crate::hypothesis::numbers::rounded_up;
@@ -297,9 +298,10 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
             "With {s} = 0, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \
              from the target."
         ),
-        Led::Desired(desired) if desired.protocol.is_some() => {
-            format!("With {s} = 0, what is left is what the scenario states, of which its author says where it leads.")
-        }
+        Led::Desired(Desired { protocol: Some(protocol), .. }) => match protocol.stable_because {
+            Some(_) => format!("With {s} = 0, what is left is what the scenario states, of which its author says where it leads."),
+            None => format!("With {s} = 0, what is left is what the scenario states, and nothing says where that leads."),
+        },
         Led::Desired(desired) if desired.follows_target => format!(
             "With {s} = 0, what is left is a linear system with the given polynomial, which is exponentially stable where that is Hurwitz, as \
              `forwardstep check` says. {bounded}, and so does the distance from the target."

@@ -3,12 +3,10 @@
 use std::ops::ControlFlow;
 
 use forwardstep_sim::push::{Course, Effect, Function, Push};
-use forwardstep_sim::{
-    Adaptive, AgentSetup, Ending, Method, Outcome, Progress, Setup, SetupError, Signal, Start, simulate,
-};
+use forwardstep_sim::{Ending, Method, Outcome, Progress, Setup, SetupError, Signal, simulate};
 use thiserror::Error;
 
-use super::{Manipulability, NoManipulability};
+use super::{Manipulability, NoManipulability, at_agreement};
 
 /// Who is pushed, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +46,8 @@ pub enum NotMeasured {
     Early,
 }
 
-/// Pushes a network that rests in agreement: every agent where the one that is pushed starts, with estimates that are right. The runs
-/// last as long as those of `setup`; `observer` as that of [`simulate`].
+/// Pushes a network that rests where all agree without s, with estimates that are right. The runs last as long as those of `setup`; `observer`
+/// as that of [`simulate`].
 ///
 /// # Errors
 /// [`NotMeasured`].
@@ -61,11 +59,11 @@ pub fn measure(
     let influence = Manipulability::of(setup, trial.agent, trial.axis)?.influence().to_vec();
     let mut pushed = |until_s: f64| -> Result<[f64; 2], NotMeasured> {
         let mut setup = at_rest(setup, trial.agent);
+        let rest: f64 = setup.agents.iter().zip(&influence).map(|(own, u)| u * own.start.q[trial.axis]).sum();
         let own = &mut setup.agents[trial.agent];
         let torque = |axis| Function::Constant(if axis == trial.axis { trial.torque } else { 0.0 });
         let effect = Effect::Torque(Course::Each((0..own.robot.axes.len()).map(torque).collect()));
         own.pushes = vec![Push { effect, from_s: 0.0, until_s }];
-        let rest = own.start.q[trial.axis];
         let outcome = simulate(&setup, observer)?;
         if outcome.ending != Ending::Completed {
             return Err(NotMeasured::Early);
@@ -82,20 +80,9 @@ pub fn measure(
     })
 }
 
-/// Everybody where one starts, at rest, with estimates that are right and nothing that pushes.
+/// Everybody at rest in agreement, in a run that shows what small pushes do.
 fn at_rest(setup: &Setup, agent: usize) -> Setup {
-    let mut rest = setup.clone();
-    let q = setup.agents[agent].start.q.clone();
-    for own in &mut rest.agents {
-        let theta = own.robot.theta.clone();
-        own.change_law(|law: &mut Adaptive| law.estimate_start = theta);
-        *own = AgentSetup {
-            start: Start { dq: vec![0.0; q.len()], q: q.clone(), rest: Vec::new(), reference: Vec::new() },
-            enforce_limits: false,
-            pushes: Vec::new(),
-            ..own.clone()
-        };
-    }
+    let mut rest = at_agreement(setup, agent);
     rest.time.record_every_s = rest.time.end_s;
     rest.solver.balance = false;
     // Far below what small pushes do.

@@ -1,6 +1,6 @@
 //! Manipulability (Remark 4): the transfer from an external torque to the value agreed upon.
 //!
-//! For a fixed graph with constant delays, at rest in agreement, and to first order in the push. Let α_r be the coefficients of agent
+//! For a fixed graph with constant delays, at rest where all agree without s, and to first order in the push. Let α_r be the coefficients of agent
 //! i's polynomial A_i = Σ_r α_r pʳ, d_i = Σⱼ w_ij, v = 1 when velocities are sent, else 0. With z = p q − s the parts of the family
 //! (`agreement`) are x₀ = q, x₁ = p q and x_r = pʳ q − p^(r−1) s for r ≥ 2, so that X_i = A_i q_i − S_i s_i with
 //! S_i = Σ_{r≥2} α_r p^(r−1), and p (X_i − α₁ s_i) = −Σⱼ w_ij [X_i − (α₀ + v α₀ p/κ₀) e^(−p T_ij) q_j] + λ_i s_i becomes
@@ -36,12 +36,13 @@ mod response;
 pub use measured::{Measured, NotMeasured, Trial, measure};
 
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::Setup;
 use forwardstep_sim::reference::PureIntegral;
+use forwardstep_sim::{Adaptive, AgentSetup, Setup, Start};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
 use self::response::Response;
+use crate::agreement::predict;
 use crate::fixed::fixed;
 use crate::instance::designed;
 use crate::null_vector::null_vector;
@@ -50,7 +51,7 @@ use crate::prediction::roots::network;
 use crate::prediction::{NoIdeal, NoRate, ideal, rate};
 use crate::surroundings::dry_loss_w;
 
-/// The transfer from a torque on one axis of one agent to the value agreed upon on this axis, with every agent at its start at rest.
+/// The transfer from a torque on one axis of one agent to the value agreed upon on this axis, with every agent at rest where all agree.
 #[derive(Debug)]
 pub struct Manipulability {
     system: Characteristic,
@@ -60,6 +61,7 @@ pub struct Manipulability {
     /// N/α₀ of the agent, from p⁰ on.
     numerator: Vec<f64>,
     response: Response,
+    posture: Vec<f64>,
 }
 
 /// What is left of the transfer as p → 0: `gain` p^(−`degree`).
@@ -152,7 +154,9 @@ impl Manipulability {
         if influence[agent] <= 0.0 {
             return Err(NoManipulability::NoInfluence { agent });
         }
-        let response = Response::at_rest(own).ok_or(NoManipulability::Law { agent })?;
+        let rest = at_agreement(setup, agent);
+        let at_rest = &rest.agents[agent];
+        let response = Response::at_rest(at_rest).ok_or(NoManipulability::Law { agent })?;
         if setup.agents.iter().any(|agent| agent.roots_per_s.all_real().is_none()) {
             // With real roots everything comes to rest again; with others only where no characteristic root says otherwise.
             rate(setup)?;
@@ -165,7 +169,12 @@ impl Manipulability {
             a.iter().enumerate().map(|(r, own)| own + degree * a.get(r + 1).unwrap_or(&0.0)).collect()
         };
         numerator[0] = own.manipulability / alpha_0;
-        Ok(Manipulability { system, influence, agent, axis, numerator, response })
+        Ok(Manipulability { system, influence, agent, axis, numerator, response, posture: at_rest.start.q.clone() })
+    }
+
+    /// Where the agent that is pushed stands, axis by axis.
+    pub fn posture(&self) -> &[f64] {
+        &self.posture
     }
 
     /// How much each agent counts in the value agreed upon: the left null vector of the Laplacian, summing to one.
@@ -207,6 +216,36 @@ impl Manipulability {
         let [_, slope] = self.system.matrix(C::from(0.0));
         slope.row_iter().zip(&self.influence).map(|(row, u)| u * row.iter().map(|entry| entry.re).sum::<f64>()).sum()
     }
+}
+
+/// Everybody at rest where all agree without s, with estimates that are right and nothing that pushes. Where that place is not known, it is
+/// where the agent that is pushed starts.
+fn at_agreement(setup: &Setup, agent: usize) -> Setup {
+    let offset = |own: &AgentSetup| {
+        let mut jets = vec![[0.0; 5]; own.robot.axes.len()];
+        if let Some(target) = &own.target {
+            target.jets(0.0, &mut jets);
+        }
+        jets.into_iter().map(|[at_start, ..]| at_start).collect::<Vec<f64>>()
+    };
+    let without_s = ideal(setup).ok().and_then(|mut alike| {
+        alike.agents.iter_mut().for_each(|own| own.manipulability = 0.0);
+        Some(predict(&alike).ok()?.value)
+    });
+    let agreed = without_s.unwrap_or_else(|| {
+        let own = &setup.agents[agent];
+        own.start.q.iter().zip(offset(own)).map(|(q, offset)| q - offset).collect()
+    });
+    let mut rest = setup.clone();
+    for own in &mut rest.agents {
+        let theta = own.robot.theta.clone();
+        own.change_law(|law: &mut Adaptive| law.estimate_start = theta);
+        let q: Vec<f64> = agreed.iter().zip(offset(own)).map(|(agreed, offset)| agreed + offset).collect();
+        own.start = Start { dq: vec![0.0; q.len()], q, rest: Vec::new(), reference: Vec::new() };
+        own.enforce_limits = false;
+        own.pushes.clear();
+    }
+    rest
 }
 
 /// The left null vector of the Laplacian of a graph that stays.

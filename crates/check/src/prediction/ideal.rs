@@ -40,7 +40,7 @@ pub enum NoIdeal {
     #[error("the velocity that backstepping asks for jumps with messages, so that it cannot be followed exactly")]
     Backstepping,
     /// Reference dynamics from outside.
-    #[error("the reference dynamics are not among those that come with forwardstep")]
+    #[error("the reference dynamics are not those of a design of the paper")]
     Own,
     /// A law whose reference is something else than derivatives of the position.
     #[error("the law of agent number {} has no reference that is known without its robot", agent + 1)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use forwardstep_check::manipulability::{LowFrequency, Manipulability, Measured, NoManipulability, Trial, measure};
 use forwardstep_check::prediction::NoRate;
+use forwardstep_check::{ideal, predict};
 use forwardstep_core::Gain;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::reference::{RootPair, RootSet};
@@ -84,6 +85,23 @@ fn eq_31_arms_that_know_gravity_have_degree_one_and_arms_that_adapt_to_it_have_n
         let mut setup = ring(agents, Exchange::PositionVelocity, 120.0);
         setup.agents.iter_mut().for_each(|agent| agent.manipulability = lambda);
         agrees(both(&setup, 1, 0.002), degree, 0.05);
+    }
+}
+
+#[test]
+fn regress_the_transfer_is_that_of_the_place_where_all_agree() {
+    let law = Arc::new(Adaptive {
+        damping: Gain::Number(8.0),
+        adaptation: Gain::Diagonal(vec![10.0; 5]),
+        estimate_start: vec![0.0; 5],
+        bounds: None,
+    });
+    let agents = (0..3).map(|i| arm(i, &roots(2, i), law.clone())).collect();
+    let setup = ring(agents, Exchange::PositionVelocity, 1.0);
+    let agreed = predict(&ideal(&setup).unwrap()).unwrap().value;
+    for agent in 0..3 {
+        assert!(agreed != setup.agents[agent].start.q);
+        assert_eq!(Manipulability::of(&setup, agent, 1).unwrap().posture(), agreed);
     }
 }
 

@@ -126,7 +126,8 @@ mod tests {
         let mut input = [3.0, -3.0, 3.0];
         plant.limit(&[0.0], &mut input);
         assert_eq!(input, [3.0, -3.0, 3.0]);
-        plant.limited([1.0, 2.0]).limit(&[0.0], &mut input);
+        let plant = plant.limited([1.0, 2.0]);
+        plant.limit(&[0.0], &mut input);
         assert_eq!(input, [1.0, -2.0, 3.0]);
         input[0] = f64::NAN;
         plant.limit(&[0.0], &mut input);

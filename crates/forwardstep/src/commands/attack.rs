@@ -47,7 +47,7 @@ fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Co
     let inside = target.is_inside();
     let refuted = inside && found.left > 1.0 + 1e-6;
     let percent = percent(found.left);
-    console.line(format_args!("{} scenarios tried, with at most {} pieces", found.tried, options.pieces));
+    console.line(format_args!("{} scenarios tried, with at most {}", found.tried, in_pieces(attack.pieces)));
     if inside {
         let style = if refuted { BAD } else { GOOD };
         let agents = found.case.starts.len();
@@ -73,7 +73,7 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
     let (pieces, seed, limit) = (options.pieces as usize, options.seed, limit(options));
     let attack = OwnAttack { scenario: &scenario, kinds, pieces, seed, limit };
     let failed = |error| complain(&Plain::new(format!("`{}` cannot be attacked: {error}", options.what)));
-    let OwnFound { text, worst, stated, broken, tried } = match attack.search(&|| stop.asked().is_some()) {
+    let OwnFound { text, files, worst, stated, broken, tried } = match attack.search(&|| stop.asked().is_some()) {
         Ok(found) => found,
         Err(NoAttack::Stopped) => {
             console.line(NoAttack::Stopped);
@@ -85,7 +85,7 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
     let [part, before] = [worst.part, stated.part].map(percent);
     let of = if worst.of_interval { "interval of all cascaded variables" } else { "disagreement" };
     let end_s = scenario.setup.time.end_s;
-    console.line(format_args!("{tried} networks tried, with at most {pieces} pieces"));
+    console.line(format_args!("{tried} networks tried, with at most {}", in_pieces(pieces)));
     let style = if grows { BAD } else { GOOD };
     let word = if grows { "grows" } else { "worst" };
     console.line(format_args!(
@@ -93,13 +93,16 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
     ));
     let words = listed(&broken);
     console.line(format_args!("  hypotheses that do not hold for it: {words}"));
-    if let [first, rest @ ..] = &scenario.inputs[..] {
-        let more = rest.iter().map(|file| format!(", {}", file.name)).collect::<String>();
-        console.line(format_args!("  {DIM}what is saved names files of the scenario: {}{more}{DIM:#}", first.name));
+    if !files.is_empty() {
+        console.line(format_args!("  {DIM}what is saved names files of the scenario: {}{DIM:#}", files.join(", ")));
     }
     saved(options, &format!("# {part}{LEFT}{words}\n{text}"), console)?;
     // That the interval never grows is what the proofs say.
     Ok(stop.asked().unwrap_or(if worst.grew { Status::Missed } else { Status::Fine }))
+}
+
+fn in_pieces(pieces: usize) -> String {
+    format!("{pieces} {}", if pieces == 1 { "piece" } else { "pieces" })
 }
 
 /// A part in percent, with digits that say something whatever its size.

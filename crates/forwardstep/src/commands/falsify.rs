@@ -62,6 +62,9 @@ fn summary(tally: &Tally, seed: u64, console: &mut Console) {
     for case in tally.undecided.iter().take(LISTED) {
         console.line(format_args!("          {DIM}undecided: case {}{DIM:#}", case.number));
     }
+    if let more @ 1.. = tally.undecided.len().saturating_sub(LISTED) {
+        console.line(format_args!("          {DIM}and {more} more{DIM:#}"));
+    }
     for (reason, count) in &tally.silent {
         console.line(format_args!("  {count:6}  {DIM}nothing to say: {reason}{DIM:#}"));
     }

@@ -47,6 +47,8 @@ pub(crate) struct OwnAttack<'a> {
 pub(crate) struct OwnFound {
     /// The scenario with its worst network.
     pub(crate) text: String,
+    /// The files that it names.
+    pub(crate) files: Vec<String>,
     pub(crate) worst: Left,
     /// The same of the scenario as it is stated.
     pub(crate) stated: Left,
@@ -74,7 +76,8 @@ pub(crate) enum NoAttack {
     Ideal(#[from] NoIdeal),
     /// There is nothing to search.
     #[error(
-        "it leaves nothing open: its edges have no common delay above zero, and no graphs of it take turns again and again"
+        "it leaves nothing open: its edges do not all share one delay above zero, and no graphs of it take turns again and again, each as long \
+         as the scenario says"
     )]
     Nothing,
     /// A delay without bound has no worst.
@@ -149,7 +152,8 @@ impl OwnAttack<'_> {
         let (plan, worst) = self.smallest(worst, &is_late);
         let text = rewired(&self.scenario.source, &plan).ok_or(NoAttack::Nothing)?;
         let scenario = self.read(&plan).ok_or(NoAttack::Silent)?;
-        Ok(OwnFound { text, worst, stated, broken: broken(&scenario.setup), tried })
+        let files = scenario.inputs.iter().map(|file| file.name.clone()).collect();
+        Ok(OwnFound { text, files, worst, stated, broken: broken(&scenario.setup), tried })
     }
 
     fn bounds(&self) -> Result<Bounds, NoAttack> {

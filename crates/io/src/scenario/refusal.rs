@@ -60,7 +60,9 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::Coupling => {
             "write `exchange = \"position\"` in `reference.consensus`, or leave `coupling` out".to_owned()
         }
-        SetupError::SendsPositionOnly { .. } => "write `exchange = \"position\"`".to_owned(),
+        SetupError::SendsPositionOnly { .. } => {
+            "write `exchange = \"position\"`, or in `reference.desired` a single number in `heard`".to_owned()
+        }
         SetupError::ReferenceOfLaw { .. } => "write `reference.consensus` with `exchange = \"position\"`".to_owned(),
         SetupError::NotTracking { .. } => {
             "write `reference.consensus`; laws that track are `adaptive`, `known`, `position_only`, `model_reference`, `task_space`, `attitude`, `passivity_filter` and those of chains".to_owned()

@@ -11,7 +11,7 @@ use crate::SourceText;
 pub struct StatedNetwork {
     /// Whether all edges share the delay of the network: none states its own, and none comes from a file.
     pub common_delay: bool,
-    /// How many graphs take turns again and again; none where one stays in the end.
+    /// How many graphs take turns again and again; none where one stays in the end, or nothing is said of how long they stay.
     pub phases: usize,
     /// How long the shortest and the longest of them stay, s.
     pub dwell_s: [f64; 2],
@@ -38,7 +38,8 @@ pub fn stated_network(source: &SourceText) -> Option<StatedNetwork> {
         Some(bounds) => bounds.as_array()?.iter().filter_map(number).collect(),
         None => phases.iter().filter_map(|phase| number(phase.get("dwell_s")?)).collect(),
     };
-    let stays = phases.len() < 2 || switching.and_then(Item::as_str) == Some("once");
+    // How long graphs stay that a table brings in is not stated.
+    let stays = phases.len() < 2 || dwell.is_empty() || switching.and_then(Item::as_str) == Some("once");
     Some(StatedNetwork {
         common_delay: !own,
         phases: if stays { 0 } else { phases.len() },

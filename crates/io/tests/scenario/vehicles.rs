@@ -244,7 +244,7 @@ const VEHICLES_CASES: &[Case] = &[
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = 1\n[network]",
         "test.toml:34:16: agent `vehicle-1`: the limit of torques has 3 entries where 0 are needed", "leave it out: what this robot does is not asked of it as torques of its axes"),
     ("[network]", "[control]\nsample_hz = 100\ntorque_limit = [1, 1]\n[network]",
-        "test.toml:34:16: agent `vehicle-1`: the limit of torques has 2 entries where 3 are needed", "a single number stands for all axes"),
+        "test.toml:34:16: agent `vehicle-1`: the limit of torques has 2 entries where 0 are needed", "leave it out: what this robot does is not asked of it as torques of its axes"),
     ("[network]", "[control]\nsample_hz = 100\nnoise = { seed = -1 }\n[network]",
         "test.toml:34:18: `seed` is -1, but must not be negative", ""),
     ("count = 2", "count = 2\nenforce_limits = true",

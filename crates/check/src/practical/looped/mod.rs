@@ -156,14 +156,13 @@ impl WholeLoop {
         })
     }
 
-    /// The period near `near_s` from which on a mode of `setup` grows in the long run, s, where `sampled` samples it with a period: the end of the
+    /// The period near `near_s` from which on a mode of `setup` grows within its run, s, where `sampled` samples it with a period: the end of the
     /// interval of periods without such a mode that holds `near_s`, or of the next one below it. Infinity where none was found; `None`
     /// where there is nothing to linearise, or a mode grows however short periods are.
     pub fn longest_period_s(near_s: f64, sampled: impl Fn(f64) -> Setup) -> Option<f64> {
         // Where nothing finite is found no mode decays.
         let decays = |period_s: f64| {
-            WholeLoop::of(&sampled(period_s))
-                .is_some_and(|it| it.trial.lost_s.is_none() && it.lasting_per_s().is_none())
+            WholeLoop::of(&sampled(period_s)).is_some_and(|it| it.trial.lost_s.is_none() && it.seen_per_s().is_none())
         };
         let (step, most) = SCAN;
         let (mut low, mut high, mut left) = (near_s, near_s, most);
@@ -193,15 +192,16 @@ impl WholeLoop {
         if self.trial.lost_s.is_some() {
             return PracticalAnswer::Inadequate;
         }
-        let lasting = self.lasting_per_s();
         let is_slower = || self.start.overshoot().is_some() || self.start.slowed_per_s().is_some();
-        match lasting {
-            Some(rate) if rate * self.end_s > 1.0 => match self.changes || self.is_contradicted(rate) {
+        match (self.seen_per_s(), self.lasting_per_s()) {
+            (Some(rate), _) => match self.changes || self.is_contradicted(rate) {
                 true => PracticalAnswer::NotShown,
                 false => PracticalAnswer::Inadequate,
             },
             _ if self.amplified().is_some() => PracticalAnswer::NotShown,
-            None if self.start_per_s().or(self.astray_per_s()).is_none() && !is_slower() => PracticalAnswer::Adequate,
+            (None, None) if self.start_per_s().or(self.astray_per_s()).is_none() && !is_slower() => {
+                PracticalAnswer::Adequate
+            }
             _ => PracticalAnswer::Marginal,
         }
     }
@@ -217,6 +217,12 @@ impl WholeLoop {
             [] => self.growth(core::slice::from_ref(&self.start)),
             led => self.growth(led),
         }
+    }
+
+    /// The same where it grows e-fold within the run: more slowly it is not seen, and along a motion the mean of a few states, each linearised by
+    /// itself, is no more certain than that.
+    fn seen_per_s(&self) -> Option<f64> {
+        self.lasting_per_s().filter(|rate| rate * self.end_s > 1.0)
     }
 
     /// The same at the start.
