@@ -10,7 +10,7 @@ cd "$(dirname "$0")"
 mkdir -p "${2:-runs}"
 folder=$(cd "${2:-runs}" && pwd)
 sanitizer=${SANITIZER:-none}
-targets=(scenario urdf csv state)
+targets=(scenario urdf csv state mesh)
 
 ./seeds.sh
 nice -n 5 cargo +nightly fuzz build --fuzz-dir . --sanitizer "$sanitizer"

@@ -2,9 +2,9 @@
 
 use std::ops::{Add, Mul};
 
+use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Exchange, Setup};
 
 use crate::agreement::NoPrediction;
 use crate::kinds::is_its_own_reference;
@@ -123,11 +123,9 @@ impl Conserved<'_> {
                 all().skip(1).fold(Tally::default(), |sum, (r, a)| sum + x(r - 1) * *a),
             )
         };
-        let velocity = match setup.exchange {
-            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-                setup.agents[i].roots_per_s.first_real().map_or(0.0, f64::recip)
-            }
-            Exchange::Position => 0.0,
+        let velocity = match setup.exchange.has_velocities() {
+            true => setup.agents[i].roots_per_s.first_real().map_or(0.0, f64::recip),
+            false => 0.0,
         };
         let (mut degree, mut past, mut past_at_rest) = (0.0, Tally::default(), Tally::default());
         for edge in &self.heard[i] {

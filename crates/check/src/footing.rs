@@ -5,6 +5,14 @@ use forwardstep_sim::graph::needed_edges;
 
 use crate::hypothesis::Id;
 use crate::report::Report;
+use crate::theorem::Theorem;
+
+/// What delays break where agents do not take averages, as under the designs of the paper: how much of them others bear nobody knows.
+const OWN_DELAYS: &str = "a delay that grows for ever, such as T = t, or a link that loses every packet; of dynamics of your own a bounded delay \
+                          can break agreement too, and nothing here says how long it may be";
+/// The same of switches.
+const OWN_SWITCHES: &str = "switches that follow each other ever faster, without a shortest phase; of dynamics of your own graphs that take turns \
+                            can break agreement too, and nothing here says how long each has to stay";
 
 /// What is said of one hypothesis.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,6 +36,7 @@ impl Footing {
     /// By what `report` says of `setup`.
     pub fn of(setup: &Setup, report: &Report) -> Footing {
         let mut footing = Footing::default();
+        let is_own = matches!(report.theorem, Theorem::Desired | Theorem::Declared(_));
         for hypothesis in &report.hypotheses {
             let (id, answer) = (hypothesis.id, hypothesis.answer());
             if !answer.is_fine() {
@@ -36,6 +45,8 @@ impl Footing {
             } else if footing.breaks.iter().all(|one| one.id != id) {
                 let words = match id {
                     Id::SpanningTree | Id::LeaderReachesAll => format!("{}; {}", id.broken_by(), links(setup)),
+                    Id::BoundedDelays if is_own => OWN_DELAYS.to_owned(),
+                    Id::DwellTime if is_own => OWN_SWITCHES.to_owned(),
                     _ => id.broken_by().to_owned(),
                 };
                 footing.breaks.push(Ground { id, words });

@@ -94,11 +94,11 @@ pub(crate) fn designed(setup: &Setup) -> Option<Setup> {
 
 /// What the design is called, with its equation.
 pub(crate) fn name(design: Design, exchange: Exchange) -> &'static str {
-    match (design, exchange) {
-        (Design::Consensus, Exchange::Position) => "(24)",
-        (Design::Consensus, Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite) => "(a5)",
-        (Design::PureIntegral, Exchange::Position) => "(23)",
-        (Design::PureIntegral, Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite) => "(3)",
+    match (design, exchange.has_velocities()) {
+        (Design::Consensus, false) => "(24)",
+        (Design::Consensus, true) => "(a5)",
+        (Design::PureIntegral, false) => "(23)",
+        (Design::PureIntegral, true) => "(3)",
         (Design::Tracking, _) => "(43) for a target",
     }
 }

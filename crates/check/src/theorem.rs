@@ -4,6 +4,7 @@ use std::fmt;
 
 use forwardstep_sim::Exchange;
 
+use crate::instance::{self, Design};
 use crate::source::Source;
 
 /// A statement about the long run. `Display` names it with its equations.
@@ -239,10 +240,7 @@ impl fmt::Display for Theorem {
                 return write!(f, "Theorem 3, reference dynamics (24) of order {order}");
             }
             Theorem::OwnOrders { exchange, least, most } => {
-                let dynamics = match exchange {
-                    Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => "(a5)",
-                    Exchange::Position => "(24)",
-                };
+                let dynamics = instance::name(Design::Consensus, *exchange);
                 return write!(f, "the argument of Theorem 3, reference dynamics {dynamics} of orders {least} to {most}");
             }
             Theorem::Backstepping => "no theorem: the backstepping baseline (aa6)",

@@ -2,6 +2,7 @@
 
 use alloc::format;
 use alloc::string::String;
+use core::fmt;
 
 /// A quantity of an agent, an entry per axis unless it says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -269,9 +270,10 @@ impl Signal {
     }
 }
 
-/// A number in raised digits.
-fn superscript(number: u8) -> String {
+/// A whole number in raised digits; what is no digit and no minus stays as it is.
+pub fn superscript(number: impl fmt::Display) -> String {
     let raised = |digit: char| match digit {
+        '-' => '⁻',
         '1' => '¹',
         '2' => '²',
         '3' => '³',
@@ -310,6 +312,6 @@ mod tests {
         assert_eq!([Signal::Derivative(2), Signal::Coordinate(3)].map(name), ["d2q", "x3"]);
         let Drawn::Card { letters, .. } = Signal::Derivative(12).row().drawn else { panic!("no card") };
         assert_eq!(letters, "q⁽¹²⁾");
-        assert_eq!(superscript(145), "¹⁴⁵");
+        assert_eq!((superscript(145), superscript(-12)), ("¹⁴⁵".into(), "⁻¹²".into()));
     }
 }

@@ -111,16 +111,7 @@ pub(crate) enum Command {
 /// The main job: the six arms, into the default folder.
 impl Default for Command {
     fn default() -> Self {
-        Command::Run(RunOptions {
-            scenario: SIX_ARMS.into(),
-            out: None,
-            force: false,
-            csv: false,
-            balance: false,
-            predict: false,
-            follow: false,
-            meshes: false,
-        })
+        Command::Run(RunOptions { scenario: SIX_ARMS.into(), out: None, writing: Writing::default() })
     }
 }
 
@@ -132,6 +123,13 @@ pub(crate) struct RunOptions {
     /// The folder to write to [default: forwardstep-runs/ and the scenario's name]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) writing: Writing,
+}
+
+// A comment of its own would become that of the command.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct Writing {
     /// Replace the files of an earlier run
     #[arg(long)]
     pub(crate) force: bool,

@@ -50,7 +50,7 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
         }
     };
     let mut console = Console::new();
-    let status = match command {
+    let ended = match command {
         Command::Run(options) => commands::run(&options, kinds, &mut console),
         Command::Report { folder, out, follow: false } => {
             commands::report(&folder, out.as_deref(), kinds, &mut console)
@@ -64,14 +64,15 @@ pub fn program_with(kinds: &Kinds, arguments: impl IntoIterator<Item = impl Into
         Command::Smoothness(options) => commands::smoothness(&options, kinds, &mut console),
         Command::Falsify(options) => commands::falsify(&options, &mut console),
         Command::Attack(options) => commands::attack(&options, kinds, &mut console),
-        Command::Scenarios { name } => commands::scenarios(name.as_deref(), &mut console),
-        Command::Schema { of } => commands::schema(of, kinds, &mut console),
-        Command::Upgrade(options) => commands::upgrade(&options, &mut console),
+        Command::Scenarios { name } => Ok(commands::scenarios(name.as_deref(), &mut console)),
+        Command::Schema { of } => Ok(commands::schema(of, kinds, &mut console)),
+        Command::Upgrade(options) => Ok(commands::upgrade(&options, &mut console)),
         Command::New(options) => commands::new(&options, kinds, &mut console),
-        Command::Robot(options) => commands::robot(&options, &mut console),
-        Command::Man { folder } => commands::man(folder.as_deref(), &mut console),
-        Command::Completions { shell } => commands::completions(shell, &mut console),
+        Command::Robot(options) => Ok(commands::robot(&options, &mut console)),
+        Command::Man { folder } => Ok(commands::man(folder.as_deref(), &mut console)),
+        Command::Completions { shell } => Ok(commands::completions(shell, &mut console)),
     };
+    let status = ended.unwrap_or_else(|status| status);
     // Text that could not be written is a failure of its own, but must not hide another.
     match console.finish() {
         Err(error) if status == Status::Fine => unwritten(&error).into(),

@@ -7,12 +7,14 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use forwardstep::check::hypothesis::{Evidence, Hypothesis, KindEvidence, Subject};
-use forwardstep::check::{Answer, Id, Report, Rigour, Source, Theorem, check};
+use forwardstep::check::{Answer, Footing, Id, Report, Rigour, Source, Theorem, check};
 use forwardstep::core::law::ParameterBounds;
 use forwardstep::io::SourceText;
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, read_scenario};
+use forwardstep::sim::delay::Delay;
 use forwardstep::sim::leader::{Following, FollowingDesign};
 use forwardstep::sim::push::{Course, Effect, Function, Push};
+use forwardstep::sim::schedule::Schedule;
 use forwardstep::sim::{
     Adaptive, Exchange, ModelReferenceLaw, PassivityFilterLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
 };
@@ -247,6 +249,33 @@ fn every_hypothesis_and_every_theorem_is_shown_by_some_setup() {
         assert!(!requires.contains('…') && !requires.is_empty() && !because.is_empty(), "{hypothesis:?}");
         assert_eq!(hypothesis.answer() == Answer::Watched, hypothesis.rigour() == Rigour::Watched, "{hypothesis:?}");
     }
+}
+
+/// Of dynamics of one's own it was said that no bounded delay breaks them, and that only graphs that switch leave open where they lead.
+#[test]
+fn regress_what_averages_bear_is_not_said_of_dynamics_of_ones_own() {
+    let breaks = |setup: &Setup, id: Id| {
+        let breaks = Footing::of(setup, &check(setup)).breaks;
+        breaks.into_iter().find(|ground| ground.id == id).map(|ground| ground.words).unwrap()
+    };
+    let mut own = shipped("desired-nonlinear");
+    own.network.delays = vec![Delay::constant(0.5)];
+    for (id, averages) in [(Id::BoundedDelays, "however long or abrupt"), (Id::DwellTime, "does not matter")] {
+        for setup in [shipped("theorem-2"), shipped("desired-dynamics")] {
+            assert!(breaks(&setup, id).contains(averages), "{:?}", breaks(&setup, id));
+        }
+        let said = breaks(&own, id);
+        assert!(!said.contains(averages) && said.contains("can break agreement too"), "{said}");
+    }
+
+    let mut other = desired("desired-dynamics", |desired| desired.heard = vec![1.0]);
+    let because = |setup: &Setup| check(setup).hypotheses[0].because();
+    assert!(because(&other).contains("over graphs that switch and links that are late"), "{}", because(&other));
+    let first = other.network.schedule.graphs[0].clone();
+    other.network.schedule = Schedule::fixed(first);
+    other.network.delays.iter_mut().for_each(|delay| *delay = Delay::constant(0.1));
+    let said = because(&other);
+    assert!(said.contains("graph, weights and delays are constant") && !said.contains("switch"), "{said}");
 }
 
 /// (24), (a5) and tracking are recognised by exact numbers; what is another design is not shown, and what cannot work is violated.

@@ -234,6 +234,7 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
         stderr(&forwardstep(&folder, &["new", "tight.toml", "--robot", "tight.urdf", "--agents", "2"]).success());
     let text = fs::read_to_string(folder.path().join("tight.toml")).unwrap();
     assert!(told.lines().count() == 2 && told.contains("but hinge of arm-1 leaves its limits"), "{told}");
+    assert!(!told.contains("no trial kept"), "{told}");
     assert!(text.contains("adaptation_gain = { bandwidth_per_s = 20 }"), "{text}");
     // Damping without the inertia of the rotors behind it.
     fs::write(folder.path().join("light.urdf"), PENDULUM.replace("LIMIT", "3").replace("DAMPING", "1e5")).unwrap();
@@ -267,6 +268,10 @@ fn what_does_not_agree_in_time_gets_more_time_or_other_gains_or_says_why_not() {
     assert!(text.contains("\n# In the trial hinge of arm-") && text.contains("`enforce_limits = true`"), "{text}");
     // Of those that all take too much the one that takes least, which is what it takes to be held.
     assert!(told.contains("takes 6.2 N m") && text.contains("takes 4.9 N m"), "{told}{text}");
+    // That none kept within them is said, with what was taken all the same.
+    let taken = "no trial kept within the effort limits, which runs report and do not enforce; what is written is the one that came nearest: with \
+                 bandwidths of 1 and 1 per second and all known";
+    assert!(told.lines().last().is_some_and(|last| last.contains(taken)), "{told}");
     // Gains that need no more than there is are taken where others would.
     fs::write(
         folder.path().join("fair.urdf"),

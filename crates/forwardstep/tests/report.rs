@@ -213,6 +213,21 @@ fn an_interrupted_run_is_rebuilt_byte_for_byte_when_it_has_ended() {
     is_rebuilt(&folder, "long");
 }
 
+/// With `--follow` it offered an option that it has not.
+#[test]
+fn regress_who_follows_a_run_into_a_folder_that_is_taken_is_told_the_same_as_without() {
+    let folder = folder();
+    fs::write(folder.path().join("arms.toml"), ARMS).unwrap();
+    for out in ["run", "taken"] {
+        forwardstep(&folder, &["run", "arms.toml", "--out", out]).success();
+    }
+    let told =
+        |more: &[&str]| stderr(&forwardstep(&folder, &[&["report", "run", "--out", "taken"], more].concat()).code(2));
+    let plain = told(&[]);
+    assert!(plain.contains("is not empty") && !plain.contains("--force"), "{plain}");
+    assert_eq!(told(&["--follow"]), plain);
+}
+
 #[test]
 fn csv_serves_where_there_is_no_parquet() {
     let folder = folder();

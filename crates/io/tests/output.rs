@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::sampled::control;
 use crate::support::{agent, outcome, record, setup, two_arms, verdicts};
 use forwardstep_check::hypothesis::{GraphEvidence, Named};
 use forwardstep_core::Gain;
@@ -238,6 +239,24 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     let (head, why) = sentence(&setup, 1e-8, 1e3, None);
     assert!(head.contains("arm-2.dq.2 moves fastest in steps of 1e-8 s"), "{head}");
     assert!(why.ends_with("1000 1/s: raise `step_s`, or raise the budget."), "{why}");
+}
+
+/// A thrust that vanished was only `it`, and who samples too slowly was told to look elsewhere.
+#[test]
+fn regress_a_thrust_that_vanishes_is_named_and_who_samples_is_told_to_sample_faster() {
+    let (mut setup, _) = two_arms();
+    let ended = |setup: &Setup, signal: Signal| {
+        let cause = BreakdownCause::Vanished { value: 0.7267, floor: 1.0 };
+        ending_sentence(setup, &Ending::BrokeDown(Breakdown { t_s: 0.5, agent: 1, signal, axis: 0, cause }))
+    };
+    let thrust = "sigma is 7.267e-1 N: the law divides by the thrust, which must stay away from zero by 1 N; ";
+    let said = ended(&setup, Signal::Thrust);
+    assert!(said.contains(&format!("{thrust}start elsewhere, or choose slower gains.")), "{said}");
+    let said = ended(&setup, Signal::Divisor);
+    assert!(said.contains("is 7.267e-1: the law divides by it, and it must stay away from zero by 1; start"), "{said}");
+    setup.control = Some(control(20.0));
+    let said = ended(&setup, Signal::Thrust);
+    assert!(said.contains(&format!("{thrust}sample faster, start elsewhere, or choose slower gains.")), "{said}");
 }
 
 #[test]

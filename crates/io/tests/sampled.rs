@@ -20,7 +20,7 @@ fn shortened(name: &str) -> Setup {
     setup
 }
 
-fn control(sample_hz: f64) -> Control {
+pub(crate) fn control(sample_hz: f64) -> Control {
     Control {
         failures: Default::default(),
         sample_hz,

@@ -118,6 +118,15 @@ impl Exchange {
             Exchange::Estimates => &["estimated position of the leader", "estimated velocity of the leader"],
         }
     }
+
+    /// Whether agents transmit how fast they move beside where they are, which makes (a5) of (24).
+    pub fn has_velocities(self) -> bool {
+        match self {
+            Exchange::PositionVelocity => true,
+            // What agents estimate of a leader, and y, are no measurements of their own.
+            Exchange::Position | Exchange::Composite | Exchange::Estimates => false,
+        }
+    }
 }
 
 /// One agent.

@@ -8,8 +8,8 @@ use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::probe::{Counterexample, probe_reference};
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, LinearReference, PureIntegral};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Exchange, Known, ModelReferenceLaw,
-    PassivityFilterLaw, PositionOnlyLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
+    Adaptive, AgentSetup, AttitudeLaw, ChainLaw, ChainModel, ChainStep, Known, ModelReferenceLaw, PassivityFilterLaw,
+    PositionOnlyLaw, Setup, TaskSpaceLaw, ThrustKind, ThrustLaw,
 };
 use num_rational::BigRational;
 
@@ -237,10 +237,10 @@ fn refuted(setup: &Setup) -> Option<Counterexample> {
 
 fn led(setup: &Setup, agent: usize) -> Led {
     let reference = setup.reference_of(agent);
-    let heard = match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => Heard::Velocities,
-        Exchange::Position if setup.network.coupling.is_linear() => Heard::Positions,
-        Exchange::Position => Heard::Coupled,
+    let heard = match setup.exchange.has_velocities() {
+        true => Heard::Velocities,
+        false if setup.network.coupling.is_linear() => Heard::Positions,
+        false => Heard::Coupled,
     };
     if let Some(desired) = reference.downcast::<Desired>() {
         match design(setup) {

@@ -16,7 +16,7 @@
 use std::collections::VecDeque;
 
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{AgentSetup, Exchange, Recording, Setup, Signal, ThrustLaw};
+use forwardstep_sim::{AgentSetup, Recording, Setup, Signal, ThrustLaw};
 use thiserror::Error;
 
 use crate::graphs::laplacian_stays;
@@ -107,10 +107,7 @@ impl CascadeSpread {
                     }
                     let psi = cascade(&setup_of.roots_per_s.real, &mut x);
                     widen(&mut own, row, psi);
-                    let told = match setup.exchange {
-                        Exchange::Position => 1,
-                        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => 2,
-                    };
+                    let told = if setup.exchange.has_velocities() { 2 } else { 1 };
                     widen(&mut sent, row, &psi[..told.min(psi.len())]);
                 }
             }
@@ -161,9 +158,7 @@ pub(super) fn defined(setup: &Setup) -> Result<(), NoCascade> {
     let larger = |from: usize, to: usize| first_root(from) > first_root(to);
     let mut edges = setup.network.schedule.graphs.iter().flatten();
     match edges.find(|edge| larger(edge.from, edge.to)) {
-        Some(edge) if setup.exchange == Exchange::PositionVelocity => {
-            Err(NoCascade::FirstRoots { from: edge.from, to: edge.to })
-        }
+        Some(edge) if setup.exchange.has_velocities() => Err(NoCascade::FirstRoots { from: edge.from, to: edge.to }),
         Some(_) | None => Ok(()),
     }
 }

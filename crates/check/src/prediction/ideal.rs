@@ -18,8 +18,8 @@ use forwardstep_core::plant::Vehicle;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{
-    AgentSetup, Axis, ChainLaw, ChainModel, Exchange, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup,
-    Solver, Start, ThrustLaw, VehicleModel,
+    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, Solver, Start,
+    ThrustLaw, VehicleModel,
 };
 use thiserror::Error;
 
@@ -127,7 +127,7 @@ pub fn told_before(setup: &Setup, ideal: &Setup) -> Option<Vec<Vec<f64>>> {
     let differs = |(told, agent): (&Vec<f64>, &AgentSetup)| *told != [&agent.start.q[..], &agent.start.dq].concat();
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
-    let velocities = setup.exchange == Exchange::PositionVelocity && !setup.reference.is::<PureIntegral>();
+    let velocities = setup.exchange.has_velocities() && !setup.reference.is::<PureIntegral>();
     (velocities && before.iter().zip(&ideal.agents).any(differs)).then_some(before)
 }
 

@@ -23,9 +23,7 @@ use std::ops::ControlFlow;
 
 use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::{
-    Adaptive, AgentSetup, DynamicsAt, Exchange, Known, Recording, Setup, Signal, TimeSpan, simulate,
-};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Recording, Setup, Signal, TimeSpan, simulate};
 use nalgebra::{DMatrix, DVector};
 
 use super::ideal::start_error;
@@ -86,7 +84,7 @@ impl Allowance {
             for edge in graph.iter().filter(|edge| edge.to == index) {
                 let weight = weight_at_most(setup, edge.weight);
                 degree += weight;
-                if setup.exchange == Exchange::PositionVelocity {
+                if setup.exchange.has_velocities() {
                     let errors = errors(setup, edge.from)?;
                     heard.iter_mut().zip(errors).for_each(|(sum, error)| *sum += weight * error);
                 }

@@ -17,6 +17,7 @@ use num_traits::{Signed, Zero};
 use super::own_targets;
 use super::tried::tried;
 use crate::derivation::polynomial_of;
+use crate::fixed::fixed;
 use crate::graphs::dwell_time;
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, ReferenceEvidence};
 use crate::instance::{design, designed, name};
@@ -36,7 +37,7 @@ pub(super) fn check(setup: &Setup, desired: &Desired) -> Report {
     let said = match &desired.protocol {
         Some(protocol) => nonlinear(setup, protocol),
         None if desired.follows_target => vec![Hypothesis::new(Id::DesiredDynamics, stability(desired))],
-        None => vec![Hypothesis::new(Id::DesiredDynamics, unknown(desired))],
+        None => vec![Hypothesis::new(Id::DesiredDynamics, unknown(setup, desired))],
     };
     if desired.follows_target && setup.network.schedule.graphs.iter().all(Vec::is_empty) {
         let report = own_targets::check(setup);
@@ -63,9 +64,9 @@ fn nonlinear(setup: &Setup, protocol: &Protocol) -> Vec<Hypothesis> {
 }
 
 /// Why nothing is known of a 𝒵 in which agents hear each other.
-fn unknown(desired: &Desired) -> ReferenceEvidence {
+fn unknown(setup: &Setup, desired: &Desired) -> ReferenceEvidence {
     match desired.written {
-        WrittenIn::Measured => ReferenceEvidence::NoDesign,
+        WrittenIn::Measured => ReferenceEvidence::NoDesign { steady: fixed(&setup.network).is_ok() },
         WrittenIn::Z | WrittenIn::X => ReferenceEvidence::NoDesignInThese,
     }
 }

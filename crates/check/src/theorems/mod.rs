@@ -13,8 +13,8 @@ mod tried;
 pub(crate) use following::certainly_slowest_per_s;
 pub(crate) use own_targets::hurwitz;
 
+use forwardstep_sim::Setup;
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};
-use forwardstep_sim::{Exchange, Setup};
 
 use crate::graphs::{dwell_time, spanning_tree};
 use crate::hypothesis::{Hypothesis, Id, ReferenceEvidence};
@@ -71,11 +71,8 @@ fn consensus(setup: &Setup, own: Vec<Hypothesis>, claim: fn(&Setup) -> Claim) ->
     hypotheses.extend(coupling(setup));
     hypotheses.extend(own);
     hypotheses.extend(manipulability(setup));
-    match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-            hypotheses.push(theorem_3::common_first_root(setup))
-        }
-        Exchange::Position => {}
+    if setup.exchange.has_velocities() {
+        hypotheses.push(theorem_3::common_first_root(setup));
     }
     let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| claim(setup));
     Report { theorem: theorem.extended(extensions(setup)), promises, hypotheses }

@@ -1,6 +1,6 @@
 //! Theorem 1 for (3), and Remark 3 for (23): reference dynamics that contain accelerations.
 
-use forwardstep_sim::{Exchange, Setup};
+use forwardstep_sim::Setup;
 
 use super::theorem_3::real_roots;
 use super::{agreement, orders};
@@ -10,10 +10,7 @@ use crate::kinds::Claim;
 use crate::theorem::Theorem;
 
 pub(super) fn claim(setup: &Setup) -> Claim {
-    let theorem = match setup.exchange {
-        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => Theorem::Theorem1,
-        Exchange::Position => Theorem::Remark3,
-    };
+    let theorem = if setup.exchange.has_velocities() { Theorem::Theorem1 } else { Theorem::Remark3 };
     Claim { theorem, promises: agreement(setup, orders(setup).0) }
 }
 

@@ -1,11 +1,8 @@
 //! `forwardstep attack`
 
-use std::fs::File;
-use std::io::{BufReader, Read};
 use std::time::Duration;
 
 use forwardstep::check::Id;
-use forwardstep::io::output::digest;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
@@ -18,18 +15,14 @@ use crate::status::Status;
 
 /// What the first line of a file says that is saved, between a number and names.
 const LEFT: &str = " % is left; hypotheses that do not hold: ";
-/// What its last line begins with, before the digest of all above: by it a file is known that was not edited since.
-const DIGEST: &str = "# as saved: ";
 
 /// Searches for delays and schedules under which a design, or a scenario, does worst.
-pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    if let Err(refused) = replace::may_replace(&options.out, is_own) {
-        return complain(&refused);
-    }
+pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+    replace::may_replace(&options.out, replace::is_unedited).map_err(|refused| complain(&refused))?;
     let stop = Stop::listen();
     match AttackTarget::named(&options.what) {
         Some(target) => design(target, options, &stop, console),
-        None => scenario(options, kinds, &stop, console).unwrap_or_else(|status| status),
+        None => scenario(options, kinds, &stop, console),
     }
 }
 
@@ -37,12 +30,12 @@ fn limit(options: &AttackOptions) -> Duration {
     Duration::try_from_secs_f64(options.seconds).unwrap_or(Duration::MAX)
 }
 
-fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Console) -> Status {
+fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Console) -> Result<Status, Status> {
     let limit = limit(options);
     let attack = Attack { target, pieces: options.pieces as usize, seed: options.seed, limit };
     let Some(found) = attack.search(&|| stop.asked().is_some()) else {
         console.line("nothing could be tried in this time");
-        return stop.asked().unwrap_or(Status::Missed);
+        return Ok(stop.asked().unwrap_or(Status::Missed));
     };
     let inside = target.is_inside();
     let refuted = inside && found.left > 1.0 + 1e-6;
@@ -63,8 +56,8 @@ fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Co
     let words = listed(&found.broken);
     console.line(format_args!("  hypotheses that do not hold for it: {words}"));
     let text = format!("# {percent}{LEFT}{words}\n{}", found.case);
-    saved(options, &text, console)
-        .map_or_else(|status| status, |()| stop.asked().unwrap_or(if refuted { Status::Missed } else { Status::Fine }))
+    saved(options, &text, console)?;
+    Ok(stop.asked().unwrap_or(if refuted { Status::Missed } else { Status::Fine }))
 }
 
 /// A scenario of the user's own, within the delays and schedules that it allows.
@@ -116,19 +109,8 @@ fn listed(broken: &[Id]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-fn is_own(file: BufReader<File>) -> bool {
-    const MOST_BYTES: u64 = 1 << 26;
-    let mut text = String::new();
-    file.take(MOST_BYTES).read_to_string(&mut text).is_ok()
-        && text.rfind(DIGEST).is_some_and(|at| text == with_digest(&text[..at]))
-}
-
-fn with_digest(text: &str) -> String {
-    format!("{text}{DIGEST}{}\n", digest(text))
-}
-
 fn saved(options: &AttackOptions, text: &str, console: &mut Console) -> Result<(), Status> {
-    replace::write(&options.out, &with_digest(text)).map_err(|refused| complain(&refused))?;
+    replace::write(&options.out, &replace::with_digest(text)).map_err(|refused| complain(&refused))?;
     console.line(format_args!("  {DIM}saved: {}{DIM:#}", shown(&options.out)));
     Ok(())
 }

@@ -16,21 +16,16 @@ use crate::console::{BOLD, Console, FAIR, Plain, complain};
 use crate::status::Status;
 
 /// Says which theorem speaks about a scenario and whether its hypotheses hold.
-pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console) -> Status {
+pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     let patience = Patience::with(LOOKING);
-    let scenario = match kinds.open_scenario(&options.scenario) {
-        Ok(scenario) => scenario,
-        Err(error) => return complain(&error),
-    };
+    let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     let promise = promise(&scenario.setup);
     let report = &promise.report;
     let mut accepted = options.accept.clone();
     accepted.sort_unstable();
     accepted.dedup();
-    let unproven = match options.certificate.as_deref().map(|path| certificate(path, &scenario, report)).transpose() {
-        Ok(unproven) => unproven.unwrap_or_default(),
-        Err(error) => return complain(&error),
-    };
+    let unproven = options.certificate.as_deref().map(|path| certificate(path, &scenario, report)).transpose();
+    let unproven = unproven.map_err(|error| complain(&error))?.unwrap_or_default();
     let predicted = || predictions(&scenario.setup, options.thorough, &mut |_| ControlFlow::Continue(()));
     let predictions = options.predict.then(predicted).flatten();
     drop(patience);
@@ -44,10 +39,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
             predictions,
             &accepted,
         );
-        match findings.to_json() {
-            Ok(text) => console.json(text),
-            Err(error) => return complain(&Plain::new(error)),
-        }
+        console.json(findings.to_json().map_err(|error| complain(&Plain::new(error)))?);
     } else {
         show(&scenario, &promise, console);
         if let Some(predictions) = &predictions {
@@ -62,7 +54,7 @@ pub(crate) fn check(options: &CheckOptions, kinds: &Kinds, console: &mut Console
         }
     }
     let practical = !options.practical || promise.practical.worst() != Some(PracticalAnswer::Inadequate);
-    if report.worst_without(&accepted).is_fine() && practical { Status::Fine } else { Status::Missed }
+    Ok(if report.worst_without(&accepted).is_fine() && practical { Status::Fine } else { Status::Missed })
 }
 
 /// Writes the answers with their proofs, and gives what is claimed without one. A waiver changes no answer.

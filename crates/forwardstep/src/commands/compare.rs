@@ -1,6 +1,5 @@
 //! `forwardstep compare`
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use forwardstep::check::smoothness::{NoSmoothness, Smoothness, smoothness};
@@ -13,9 +12,9 @@ use forwardstep::sim::Setup;
 use super::compare_table;
 use super::progress::Bar;
 use super::promise::{Promise, promise};
-use super::run::{execute, refused};
+use super::run::{Job, refused};
 use super::stop::Stop;
-use crate::arguments::{CompareOptions, RunOptions};
+use crate::arguments::{CompareOptions, Writing};
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
 
@@ -43,11 +42,7 @@ struct Ready {
 }
 
 /// Runs what is not yet run, and writes what was promised, predicted and observed of all, side by side.
-pub(crate) fn compare(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn finish(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn compare(options: &CompareOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     // All of them are read before anything is run or written.
     let mut given = Vec::new();
     for (k, text) in options.runs.iter().enumerate() {
@@ -167,26 +162,16 @@ fn run_first(
     kinds: &Kinds,
     stop: &Stop,
 ) -> Result<Status, Status> {
-    let options = RunOptions {
-        scenario: scenario.name.clone(),
-        out: None,
-        force: options.force,
-        csv: false,
-        balance: false,
-        predict: options.predict,
-        follow: false,
-        meshes: false,
-    };
+    let writing = Writing { force: options.force, predict: options.predict, ..Writing::default() };
     let promise = promise(&scenario.setup);
-    execute(scenario, &promise, path, &options, kinds, stop, &mut Console::muted())
+    Job { scenario, promise: &promise, path, writing, kinds, stop }.execute(&mut Console::muted())
 }
 
 /// Reads a run back, and looks at its jumps.
 fn open(name: String, folder: PathBuf, kinds: &Kinds, options: &CompareOptions, stop: &Stop) -> Result<Ready, Status> {
     let run = SavedRun::look_with(&folder, kinds).map_err(|error| complain(&error))?;
     let promise = promise(run.setup());
-    let remarks = run.remarks(&promise.report, env!("CARGO_PKG_VERSION"));
-    let notices: Vec<String> = remarks.iter().map(ToString::to_string).collect();
+    let notices: Vec<String> = promise.remarks(&run).iter().map(ToString::to_string).collect();
     for sentence in &notices {
         remark(format_args!("note on {}: {sentence}", shown(&name)));
     }
@@ -203,7 +188,7 @@ fn jumps_of(setup: &Setup, stop: &Stop) -> Result<Result<Smoothness, String>, St
     let mut bar = Bar::new();
     let found = smoothness(setup, &mut |progress| {
         bar.update(progress);
-        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        stop.flow()
     });
     bar.clear();
     match (found, stop.asked()) {
@@ -217,7 +202,7 @@ fn jumps_of(setup: &Setup, stop: &Stop) -> Result<Result<Smoothness, String>, St
 
 impl Ready {
     fn record(&self) -> RunRecord<'_> {
-        self.run.record(&self.promise.report, self.promise.value().map(<[f64]>::to_vec), &[])
+        self.promise.record(&self.run, &[])
     }
 
     fn compared<'a>(&'a self, record: &'a RunRecord<'a>) -> Compared<'a> {

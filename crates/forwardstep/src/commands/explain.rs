@@ -1,7 +1,5 @@
 //! `forwardstep explain`
 
-use std::ops::ControlFlow;
-
 use forwardstep::check::derivation::explain as derive;
 use forwardstep::check::derivation::residual::{ROUNDING, Residual, Residuals};
 use forwardstep::check::{Footing, check};
@@ -21,15 +19,12 @@ use crate::console::{BOLD, Console, DIM, Plain, complain, remark};
 use crate::status::Status;
 
 /// Derives why a scenario converges.
-pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Console) -> Status {
+pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     let patience = Patience::with(LOOKING);
-    let scenario = match kinds.open_scenario(&options.scenario) {
-        Ok(scenario) => scenario,
-        Err(error) => return complain(&error),
-    };
+    let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     if options.along {
         drop(patience);
-        return along(&scenario, options.json, console).unwrap_or_else(|status| status);
+        return along(&scenario, options.json, console);
     }
     let explanation = derive(&scenario.setup);
     let footing = Footing::of(&scenario.setup, &check(&scenario.setup));
@@ -45,7 +40,7 @@ pub(crate) fn explain(options: &ExplainOptions, kinds: &Kinds, console: &mut Con
             show(&line, console);
         }
     }
-    Status::Fine
+    Ok(Status::Fine)
 }
 
 /// The identities along a run in continuous time: under digital control none of them holds between samples.
@@ -59,7 +54,7 @@ fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Statu
     let (stop, mut bar) = (Stop::listen(), Bar::new());
     let mut observer = |progress| {
         bar.update(progress);
-        if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        stop.flow()
     };
     let outcome = simulate_moments(setup, &mut observer, &mut |moment| residuals.look(moment)).map_err(refused)?;
     bar.clear();

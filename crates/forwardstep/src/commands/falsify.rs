@@ -1,13 +1,12 @@
 //! `forwardstep falsify`
 
 use forwardstep::io::shown;
-use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
+use super::replace;
 use super::stop::Stop;
 use crate::arguments::FalsifyOptions;
-use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
+use crate::console::{BAD, Console, DIM, GOOD, complain};
 use crate::falsify::{Case, Failure, Tally};
 use crate::status::Status;
 
@@ -15,7 +14,7 @@ use crate::status::Status;
 const LISTED: usize = 20;
 
 /// Draws scenarios and tries to refute what is claimed of them.
-pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Status {
+pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Result<Status, Status> {
     let stop = Stop::listen();
     let started = Instant::now();
     let limit =
@@ -28,20 +27,19 @@ pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Status
         tally.add(Case::draw(options.seed, number));
         for (case, failure) in &tally.failed[saved..] {
             console.line(format_args!("{BAD}refuted{BAD:#}: case {}: {failure}", case.number));
-            if let Err(status) = save(&options.out, case, failure, console) {
-                return status;
-            }
+            save(options, case, failure, console)?;
         }
         saved = tally.failed.len();
     }
     summary(&tally, options.seed, console);
-    stop.asked().unwrap_or(if tally.failed.is_empty() { Status::Fine } else { Status::Missed })
+    Ok(stop.asked().unwrap_or(if tally.failed.is_empty() { Status::Fine } else { Status::Missed }))
 }
 
-fn save(folder: &Path, case: &Case, failure: &Failure, console: &mut Console) -> Result<(), Status> {
-    let path = folder.join(format!("refuted-{}.toml", case.number));
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, format!("# {failure}\n{case}")));
-    written.map_err(|error| complain(&Plain::new(error)))?;
+fn save(options: &FalsifyOptions, case: &Case, failure: &Failure, console: &mut Console) -> Result<(), Status> {
+    // Every seed draws another case of the same number.
+    let name = format!("refuted-{}-{}.toml", options.seed, case.number);
+    let path = replace::write_into(&options.out, &name, &format!("# {failure}\n{case}"));
+    let path = path.map_err(|refused| complain(&refused))?;
     console.line(format_args!("  {DIM}saved, as small as it still fails: {}{DIM:#}", shown(&path)));
     Ok(())
 }
@@ -70,4 +68,31 @@ fn summary(tally: &Tally, seed: u64, console: &mut Console) {
     }
     let (style, count) = if tally.failed.is_empty() { (GOOD, 0) } else { (BAD, tally.failed.len()) };
     console.line(format_args!("  {style}{count:6}  refuted{style:#}"));
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// What a second seed refuted took the place of what the first had.
+    #[test]
+    fn regress_what_is_refuted_by_another_seed_is_kept_beside() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("refuted");
+        let save = |seed: u64, failure: &str| {
+            let options = FalsifyOptions { cases: 1, from: 4, seed, seconds: None, out: out.clone() };
+            let failure = Failure::BrokeDown(failure.to_owned());
+            save(&options, &Case::draw(seed, 4), &failure, &mut Console::muted())
+        };
+        let text = |seed: u64| std::fs::read_to_string(out.join(format!("refuted-{seed}-4.toml"))).unwrap();
+        assert_eq!((save(1, "first"), save(2, "second")), (Ok(()), Ok(())));
+        assert!(text(1).contains(": first\n") && text(2).contains(": second\n"));
+        // What it wrote itself is written anew, and nothing that somebody edited.
+        assert_eq!(save(1, "again"), Ok(()));
+        assert!(text(1).contains(": again\n"));
+        std::fs::write(out.join("refuted-1-4.toml"), text(1).replace("again", "mine")).unwrap();
+        assert_eq!(save(1, "third"), Err(Status::BadInput));
+        assert!(text(1).contains(": mine\n"));
+    }
 }

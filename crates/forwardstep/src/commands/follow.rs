@@ -9,7 +9,7 @@ use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
 use super::growing::{Failure, Pages, Place};
-use super::report::finish;
+use super::report::{elsewhere, finish};
 use super::run::refused;
 use super::stop::Stop;
 use crate::console::{Console, complain, remark};
@@ -23,13 +23,14 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const TICK: Duration = Duration::from_millis(50);
 
 /// Writes the page of a run anew while it goes on, and all that `report` writes when it has ended.
-pub(crate) fn follow(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Status {
-    watch(folder, out, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn watch(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn follow(
+    folder: &Path,
+    out: Option<&Path>,
+    kinds: &Kinds,
+    console: &mut Console,
+) -> Result<Status, Status> {
     let stop = Stop::listen();
-    let elsewhere = out.map(|out| RunFolder::create(out, false)).transpose().map_err(refused)?;
+    let into = out.map(elsewhere).transpose().map_err(refused)?;
     let mut journal = Growth::new(folder);
     let mut pages = Pages::new(folder, Place::Folder(out.unwrap_or(folder)), kinds, None, SHARE);
     let mut told = false;
@@ -51,7 +52,7 @@ fn watch(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console
             sleep(TICK);
         }
     }
-    finish(folder, elsewhere.map(|elsewhere| move || Ok(elsewhere)), kinds, console)
+    finish(folder, into.map(|into| move || Ok(into)), kinds, console)
 }
 
 /// Whether a run goes on.
@@ -67,7 +68,7 @@ impl<'f> Growth<'f> {
     }
 
     fn goes_on(&mut self) -> bool {
-        let length = self.folder.join("rows.journal").metadata().ok().map(|about| about.len());
+        let length = RunFolder::journal_in(self.folder).metadata().ok().map(|about| about.len());
         if length != self.length {
             (self.length, self.grew) = (length, Instant::now());
         }

@@ -91,7 +91,7 @@ impl<'p> Pages<'p> {
     }
 
     fn draw_newer(&mut self) -> Result<Option<PathBuf>, Failure> {
-        let journal = self.folder.join("rows.journal");
+        let journal = RunFolder::journal_in(self.folder);
         let journal_bytes = journal.metadata().map_or(0, |about| about.len());
         if journal_bytes == self.journal_bytes {
             return Ok(None);
@@ -113,8 +113,7 @@ impl<'p> Pages<'p> {
             Some(promise) => promise,
             None => self.own.get_or_insert_with(|| promise(run.setup())),
         };
-        let remarks = run.remarks(&promise.report, env!("CARGO_PKG_VERSION"));
-        let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
+        let record = promise.record(&run, &promise.remarks(&run));
         let rows = record.outcome.recording.t_s.len();
         if rows <= self.rows {
             return Ok(None);

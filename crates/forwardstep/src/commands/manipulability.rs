@@ -1,7 +1,5 @@
 //! `forwardstep manipulability`
 
-use std::ops::ControlFlow;
-
 use forwardstep::check::manipulability::{LowFrequency, Manipulability, Measured, NoManipulability, Trial, measure};
 use forwardstep::io::output::names;
 use forwardstep::io::scenario::Scenario;
@@ -26,11 +24,11 @@ struct NoSuchAgent {
 }
 
 /// Pushes scenarios at rest with several λ, and sets what happened beside the theory.
-pub(crate) fn manipulability(options: &ManipulabilityOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn finish(options: &ManipulabilityOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn manipulability(
+    options: &ManipulabilityOptions,
+    kinds: &Kinds,
+    console: &mut Console,
+) -> Result<Status, Status> {
     let stop = Stop::listen();
     if options.table {
         console.line("| Scenario | Parameters | λ | Degree | Gain | By an impulse: theory | measured | By a constant torque: theory | measured |");
@@ -48,8 +46,7 @@ fn finish(options: &ManipulabilityOptions, kinds: &Kinds, console: &mut Console)
             let theory = Manipulability::of(&setup, trial.agent, trial.axis)
                 .map_err(|error| refuse(&setup, &error))?
                 .low_frequency();
-            let go_on = |_| if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-            let found = measure(&setup, trial, &mut { go_on });
+            let found = measure(&setup, trial, &mut |_| stop.flow());
             if let Some(status) = stop.asked() {
                 return Err(status);
             }

@@ -7,7 +7,7 @@ use forwardstep::check::prediction::{COURSE_WORK, NoRate, course_within, guarant
 use forwardstep::check::{
     self, Answer, NoPrediction, NotFixed, Practical, PracticalAnswer, Prediction, Report, Source,
 };
-use forwardstep::io::output::{Predictions, names};
+use forwardstep::io::output::{Predictions, Remark, RunRecord, SavedRun, names};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::sim::{Progress, Setup};
 
@@ -31,6 +31,16 @@ impl Promise {
     /// The same for people, with the digits that are known.
     pub(crate) fn known_value(&self) -> String {
         self.agreement.as_ref().map_or_else(|_| String::new(), |prediction| first(&prediction.known_digits()))
+    }
+
+    /// What is to be said of a run that was read back, for which this is promised now.
+    pub(crate) fn remarks(&self, run: &SavedRun) -> Vec<Remark> {
+        run.remarks(&self.report, env!("CARGO_PKG_VERSION"))
+    }
+
+    /// Its record, with these remarks.
+    pub(crate) fn record<'a>(&'a self, run: &'a SavedRun, remarks: &[Remark]) -> RunRecord<'a> {
+        run.record(&self.report, self.value().map(<[f64]>::to_vec), remarks)
     }
 }
 

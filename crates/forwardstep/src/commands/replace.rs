@@ -1,12 +1,38 @@
 //! Files that a command writes where the user says: what somebody else wrote there is never lost.
 
 use std::fs::{self, File};
-use std::io::{self, BufReader, ErrorKind, Write};
+use std::io::{self, BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
+use forwardstep::io::output::digest;
 use forwardstep::io::shown;
 
 use crate::console::Plain;
+
+/// What the last line of a scenario begins with that a command saved, before the digest of all above.
+const DIGEST: &str = "# as saved: ";
+
+/// A scenario that is to be saved, with a last line by which it is known again.
+pub(super) fn with_digest(text: &str) -> String {
+    format!("{text}{DIGEST}{}\n", digest(text))
+}
+
+/// Whether a file is as a command saved it, and nobody edited it since.
+pub(super) fn is_unedited(file: BufReader<File>) -> bool {
+    const MOST_BYTES: u64 = 1 << 26;
+    let mut text = String::new();
+    file.take(MOST_BYTES).read_to_string(&mut text).is_ok()
+        && text.rfind(DIGEST).is_some_and(|at| text == with_digest(&text[..at]))
+}
+
+/// Writes a file into a folder, which is made if it is not there, unless somebody else's stands there under that name.
+pub(super) fn write_into(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Plain<String>> {
+    fs::create_dir_all(folder).map_err(|error| not_into(folder, &error))?;
+    let path = folder.join(name);
+    may_replace(&path, is_unedited)?;
+    write(&path, &with_digest(text))?;
+    Ok(path)
+}
 
 /// Checks that `path` can be written: nothing is there, or what `is_own` knows as written by this command before. Asked before the
 /// work, so that none is lost.
@@ -55,6 +81,15 @@ fn is_unread(path: &Path) -> bool {
 #[cfg(not(unix))]
 fn is_unread(_: &Path) -> bool {
     false
+}
+
+fn not_into(folder: &Path, error: &io::Error) -> Plain<String> {
+    let help = match error.kind() {
+        ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => Some("name a folder that you may write to"),
+        ErrorKind::StorageFull => Some("make room, or name a folder on another disk"),
+        _ => None,
+    };
+    Plain::with_help(format!("cannot write into `{}`: {error}", shown(folder)), help)
 }
 
 fn refused(path: &Path, error: &io::Error) -> Plain<String> {

@@ -12,17 +12,23 @@ use crate::console::{Console, complain, remark};
 use crate::status::Status;
 
 /// Builds the report and the plots of a run anew from its tables, or all of it elsewhere.
-pub(crate) fn report(folder: &Path, out: Option<&Path>, kinds: &Kinds, console: &mut Console) -> Status {
-    let into = out.map(|out| {
-        // Nothing replaces what another folder holds.
-        move || match RunFolder::create(out, false) {
-            Err(OutputError::FolderNotEmpty { path, .. }) => {
-                Err(OutputError::FolderNotEmpty { path, replaceable: false, cut_off: false })
-            }
-            made => made,
+pub(crate) fn report(
+    folder: &Path,
+    out: Option<&Path>,
+    kinds: &Kinds,
+    console: &mut Console,
+) -> Result<Status, Status> {
+    finish(folder, out.map(|out| move || elsewhere(out)), kinds, console)
+}
+
+/// Another folder for all that is written of a run. Nothing replaces what it holds, so that no `--force` is offered.
+pub(super) fn elsewhere(out: &Path) -> Result<RunFolder, OutputError> {
+    match RunFolder::create(out, false) {
+        Err(OutputError::FolderNotEmpty { path, .. }) => {
+            Err(OutputError::FolderNotEmpty { path, replaceable: false, cut_off: false })
         }
-    });
-    finish(folder, into, kinds, console).unwrap_or_else(|status| status)
+        made => made,
+    }
 }
 
 /// The same into the folder that `into` prepares, if there is one, when the run was read.
@@ -41,11 +47,11 @@ pub(super) fn finish(
         remark(ending_sentence(run.setup(), ending));
     }
     let promise = promise(run.setup());
-    let remarks = run.remarks(&promise.report, env!("CARGO_PKG_VERSION"));
+    let remarks = promise.remarks(&run);
     for sentence in &remarks {
         remark(format_args!("note: {sentence}"));
     }
-    let record = run.record(&promise.report, promise.value().map(<[f64]>::to_vec), &remarks);
+    let record = promise.record(&run, &remarks);
     let files = match into {
         Some(into) => into().and_then(|elsewhere| run.write_into(&elsewhere, &record)),
         None => run.write_report(&record),

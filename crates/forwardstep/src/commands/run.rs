@@ -2,12 +2,12 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use forwardstep::check::{self, InjectionWatch};
 use forwardstep::io::output::{
-    self, DigitalCost, GoalOutcome, Injected, InjectedCourse, Journal, Metrics, OutputError, RunFolder, RunRecord,
-    continuous_twin, ending_sentence,
+    self, DigitalCost, GoalOutcome, Injected, InjectedCourse, Journal, Metrics, OutputError, Predictions, RunFolder,
+    RunRecord, continuous_twin, ending_sentence,
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
@@ -23,7 +23,7 @@ use super::progress::Bar;
 use super::promise::{Promise, predictions, predicts_quickly, promise, show, show_predictions};
 use super::stop::Stop;
 use super::summary::summary;
-use crate::arguments::RunOptions;
+use crate::arguments::{RunOptions, Writing};
 use crate::console::{Console, Plain, complain, remark};
 use crate::status::Status;
 
@@ -31,11 +31,7 @@ use crate::status::Status;
 const MOST_LEFT_OUT: usize = 5;
 
 /// Simulates a scenario, writes its folder and prints a summary.
-pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn run(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     let patience = Patience::with(LOOKING);
     let scenario = kinds.open_scenario(&options.scenario).map_err(|error| complain(&error))?;
     scenario.check_recording().map_err(|error| complain(&error))?;
@@ -44,104 +40,162 @@ fn finish(options: &RunOptions, kinds: &Kinds, console: &mut Console) -> Result<
     let path = options.out.clone().unwrap_or_else(|| Path::new("forwardstep-runs").join(&scenario.name));
     // Only now: until there is something to keep, Ctrl-C just ends the program.
     let stop = Stop::listen();
-    execute(&scenario, &promise, &path, options, kinds, &stop, console)
+    let writing = options.writing;
+    Job { scenario: &scenario, promise: &promise, path: &path, writing, kinds, stop: &stop }.execute(console)
 }
 
-/// Simulates a scenario that was read, into the folder `path`, and says so.
-pub(super) fn execute(
-    scenario: &Scenario,
-    promise: &Promise,
-    path: &Path,
-    options: &RunOptions,
-    kinds: &Kinds,
-    stop: &Stop,
-    console: &mut Console,
-) -> Result<Status, Status> {
-    // Before the run, so that no work is lost to a folder that cannot be written to.
-    // What an earlier run wrote is read for that, which takes long where it is large.
-    let folder = stop.at_once(|| RunFolder::create(path, options.force)).map_err(refused)?;
-    show(scenario, promise, console);
-    let (setup, mut bar) = (&scenario.setup, Bar::new());
-    let predicts = options.predict || predicts_quickly(setup);
-    let thorough = options.predict;
-    let mut seen = |progress| watch(&mut bar, stop, progress);
-    let prediction = if predicts { predictions(setup, thorough, &mut seen) } else { None };
-    bar.clear();
-    match &prediction {
-        Some(prediction) => show_predictions(setup, prediction, console),
-        None if predicts || check::ideal(setup).is_err() => {}
-        None => console
-            .line("No prediction: it would take a large part of the run's time. Use --predict to get one anyway."),
-    }
-    console.line("");
+/// A scenario that was read and is to be run, and into which folder.
+pub(super) struct Job<'a> {
+    pub(super) scenario: &'a Scenario,
+    pub(super) promise: &'a Promise,
+    pub(super) path: &'a Path,
+    pub(super) writing: Writing,
+    pub(super) kinds: &'a Kinds,
+    pub(super) stop: &'a Stop,
+}
 
-    let shapes = options.meshes.then(|| {
-        let (shapes, left_out) = Shapes::read(&scenario.models);
+impl Job<'_> {
+    /// Simulates it, writes its folder and says so.
+    pub(super) fn execute(&self, console: &mut Console) -> Result<Status, Status> {
+        let Job { scenario, promise, path, writing, stop, .. } = *self;
+        let setup = &scenario.setup;
+        // Before the run, so that no work is lost to a folder that cannot be written to.
+        // What an earlier run wrote is read for that, which takes long where it is large.
+        let folder = stop.at_once(|| RunFolder::create(path, writing.force)).map_err(refused)?;
+        show(scenario, promise, console);
+        let prediction = self.predicted(console);
+        console.line("");
+        let shapes = writing.meshes.then(|| self.drawn());
+
+        let started = Instant::now();
+        let mut balances = if writing.balance { InjectionWatch::of(setup) } else { None };
+        let nothing = nothing_yet(scenario)?;
+        let mut start = record(scenario, promise, &nothing, None);
+        start.prediction = prediction.clone();
+        let mut journal = Journal::new(&folder, start, || started.elapsed());
+        let mut outcome = self.simulated(&folder, &mut journal, balances.as_mut())?;
+        outcome.statistics.wall = Some(started.elapsed());
+
+        let metrics = Metrics::of(setup, &outcome.recording, promise.value(), scenario.goal);
+        let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
+        let mut record = record(scenario, promise, &outcome, goal);
+        record.prediction = prediction;
+        record.shapes = shapes.as_ref();
+        record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
+        record.injected_course = balances.as_ref().and_then(|balances| InjectedCourse::of(&balances.course()));
+        let lost = journal.failure().is_some();
+        if let Some(error) = journal.failure() {
+            remark(format_args!("{error}; the run was stopped, since its rows could no longer be kept"));
+            error.help().into_iter().for_each(remark);
+        }
+        journal.end(&record, metrics.clone());
+        let compared = self.compared(&outcome);
+        let cut_short = compared.as_ref().is_some_and(|compared| compared.cut_short);
+        let took = compared.as_ref().map(|compared| compared.took);
+        record.digital = compared.and_then(|compared| compared.cost);
+        let files = output::write_run(&folder, &record, output::Options { csv: writing.csv })
+            .map_err(|error| kept_if_journaled(refused(error), &folder))?;
+        if outcome.ending != Ending::Completed {
+            remark(ending_sentence(setup, &outcome.ending));
+        }
+        if cut_short {
+            let whole = if outcome.ending == Ending::Completed { "; the run itself is complete" } else { "" };
+            remark(format_args!("Interrupted while comparing with continuous time{whole}."));
+        }
+        console.text(summary(&record, &metrics, &promise.known_value(), took, path, &files));
+        let missed = goal.is_some_and(|goal| !goal.met);
+        Ok(status(&outcome.ending, lost, missed, cut_short, stop.asked()))
+    }
+
+    /// What is predicted, where that is asked for or takes no time to speak of.
+    fn predicted(&self, console: &mut Console) -> Option<Predictions> {
+        let (setup, thorough) = (&self.scenario.setup, self.writing.predict);
+        let predicts = thorough || predicts_quickly(setup);
+        let mut bar = Bar::new();
+        let mut seen = |progress| watch(&mut bar, self.stop, progress);
+        let prediction = if predicts { predictions(setup, thorough, &mut seen) } else { None };
+        bar.clear();
+        match &prediction {
+            Some(prediction) => show_predictions(setup, prediction, console),
+            None if predicts || check::ideal(setup).is_err() => {}
+            None => console
+                .line("No prediction: it would take a large part of the run's time. Use --predict to get one anyway."),
+        }
+        prediction
+    }
+
+    /// What robots look like; what is left out of that is said.
+    fn drawn(&self) -> Shapes {
+        // Meshes may be large, and nothing is there to be kept.
+        let (shapes, left_out) = self.stop.at_once(|| Shapes::read(&self.scenario.models));
         let left_out = alike(&left_out);
         left_out.iter().take(MOST_LEFT_OUT).for_each(|why| remark(format_args!("Not drawn: {}", shown(why.as_str()))));
         if let Some(more @ 1..) = left_out.len().checked_sub(MOST_LEFT_OUT) {
             remark(format_args!("and without {more} more"));
         }
         shapes
-    });
-
-    let mut bar = Bar::new();
-    let started = Instant::now();
-    let mut balances = if options.balance { InjectionWatch::of(setup) } else { None };
-    let mut observer = |progress| watch(&mut bar, stop, progress);
-    let nothing = nothing_yet(scenario)?;
-    let mut start = record(scenario, promise, &nothing, None);
-    start.prediction = prediction.clone();
-    let mut journal = Journal::new(&folder, start, || started.elapsed());
-    let balance = balances.as_mut().map(|balances| balances as &mut dyn Watch);
-    if options.follow {
-        let page = path.join("report.html");
-        remark(format_args!("The page grows while the run goes on, from its first second on: {}", shown(&page)));
     }
-    let outcome = followed(options.follow, &folder, kinds, promise, || {
-        simulate_into(setup, &mut observer, balance, &mut journal)
-    });
-    bar.clear();
-    let mut outcome = outcome.map_err(|error| complain(&Plain::new(error)))?;
-    outcome.statistics.wall = Some(started.elapsed());
 
-    let metrics = Metrics::of(setup, &outcome.recording, promise.value(), scenario.goal);
-    let goal = scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, &outcome, &metrics) });
-    let mut record = record(scenario, promise, &outcome, goal);
-    record.prediction = prediction;
-    record.shapes = shapes.as_ref();
-    record.injected = balances.iter().flat_map(InjectionWatch::balances).map(|own| Injected::from(&own)).collect();
-    record.injected_course = balances.as_ref().and_then(|balances| InjectedCourse::of(&balances.course()));
-    let lost = journal.failure().is_some();
-    if let Some(error) = journal.failure() {
-        remark(format_args!("{error}; the run was stopped, since its rows could no longer be kept"));
-        error.help().into_iter().for_each(remark);
+    fn simulated(
+        &self,
+        folder: &RunFolder,
+        journal: &mut Journal<'_>,
+        balances: Option<&mut InjectionWatch>,
+    ) -> Result<Outcome, Status> {
+        let mut bar = Bar::new();
+        let mut observer = |progress| watch(&mut bar, self.stop, progress);
+        let balance = balances.map(|balances| balances as &mut dyn Watch);
+        if self.writing.follow {
+            let page = self.path.join("report.html");
+            remark(format_args!("The page grows while the run goes on, from its first second on: {}", shown(&page)));
+        }
+        let outcome = followed(self.writing.follow, folder, self.kinds, self.promise, || {
+            simulate_into(&self.scenario.setup, &mut observer, balance, journal)
+        });
+        bar.clear();
+        outcome.map_err(|error| complain(&Plain::new(error)))
     }
-    journal.end(&record, metrics.clone());
-    let mut compared = None;
-    if setup.control.is_some() && !matches!(outcome.ending, Ending::Interrupted { .. }) {
+
+    /// Simulates the same in continuous time, as far as the run came. Whoever does not want to wait for it may interrupt: the run
+    /// itself is kept.
+    fn compared(&self, outcome: &Outcome) -> Option<Compared> {
+        let setup = &self.scenario.setup;
+        if setup.control.is_none() || matches!(outcome.ending, Ending::Interrupted { .. }) {
+            return None;
+        }
         let started = Instant::now();
-        record.digital = digital_cost(scenario, &outcome, stop);
-        compared = Some(started.elapsed());
+        let mut bar = Bar::named("the same in continuous time");
+        let until_s = outcome.recording.t_s.last().copied().filter(|last| *last > 0.0);
+        let twin = until_s.and_then(|until_s| {
+            simulate(&continuous_twin(setup, until_s), &mut |progress| watch(&mut bar, self.stop, progress)).ok()
+        });
+        bar.clear();
+        let cut_short = twin.as_ref().is_some_and(|twin| matches!(twin.ending, Ending::Interrupted { .. }));
+        let cost = twin.and_then(|twin| DigitalCost::of(setup, outcome, &twin, self.scenario.goal));
+        Some(Compared { cost, cut_short, took: started.elapsed() })
     }
-    let files = output::write_run(&folder, &record, output::Options { csv: options.csv })
-        .map_err(|error| kept_if_journaled(refused(error), &folder))?;
-    if outcome.ending != Ending::Completed {
-        remark(ending_sentence(setup, &outcome.ending));
-    }
-    let cut_short = stop.asked().filter(|_| !matches!(outcome.ending, Ending::Interrupted { .. }));
-    if cut_short.is_some() {
-        remark("Interrupted while comparing with continuous time; the run itself is complete.");
-    }
-    console.text(summary(&record, &metrics, &promise.known_value(), compared, path, &files));
-    Ok(match outcome.ending {
+}
+
+/// What the comparison with continuous time gave.
+struct Compared {
+    cost: Option<DigitalCost>,
+    /// Whether it was interrupted.
+    cut_short: bool,
+    took: Duration,
+}
+
+/// How a run ends the program: rows may be `lost`, its goal `missed`, its comparison with continuous time `cut_short`, and somebody may have
+/// `asked` it to stop. Who asks when the last step is made, or while files are written, gets a run that is whole.
+fn status(ending: &Ending, lost: bool, missed: bool, cut_short: bool, asked: Option<Status>) -> Status {
+    let interrupted = asked.unwrap_or(Status::Interrupted);
+    match ending {
         Ending::BrokeDown(_) => Status::BrokeDown,
-        _ if cut_short.is_some() => cut_short.unwrap_or(Status::Interrupted),
+        _ if cut_short => interrupted,
         _ if lost => Status::BadInput,
-        Ending::Interrupted { .. } | Ending::CutOff { .. } => stop.asked().unwrap_or(Status::Interrupted),
-        Ending::Completed if goal.is_some_and(|goal| !goal.met) => Status::Missed,
+        Ending::Interrupted { .. } | Ending::CutOff { .. } => interrupted,
+        Ending::Completed if missed => Status::Missed,
         Ending::Completed => Status::Fine,
-    })
+    }
 }
 
 /// Why shapes are left out, those of one reason as one.
@@ -172,7 +226,7 @@ fn nothing_yet(scenario: &Scenario) -> Result<Outcome, Status> {
 /// Shows how far it is, and stops when it is asked to.
 fn watch(bar: &mut Bar, stop: &Stop, progress: Progress) -> ControlFlow<()> {
     bar.update(progress);
-    if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    stop.flow()
 }
 
 fn record<'a>(
@@ -201,25 +255,16 @@ fn record<'a>(
     }
 }
 
-/// Simulates the same in continuous time, as far as the run came. Whoever does not want to wait for it may interrupt: the run
-/// itself is kept.
-fn digital_cost(scenario: &Scenario, outcome: &Outcome, stop: &Stop) -> Option<DigitalCost> {
-    let mut bar = Bar::named("the same in continuous time");
-    let until_s = outcome.recording.t_s.last().copied().filter(|last| *last > 0.0)?;
-    let twin = simulate(&continuous_twin(&scenario.setup, until_s), &mut |progress| watch(&mut bar, stop, progress));
-    bar.clear();
-    DigitalCost::of(&scenario.setup, outcome, &twin.ok()?, scenario.goal)
-}
-
 /// Says where the rows are of a run whose files could not be written.
 fn kept_if_journaled(status: Status, folder: &RunFolder) -> Status {
     let path = folder.path();
     // What another folder under its name keeps is another run's.
-    if !folder.is_elsewhere() && path.join("rows.journal").is_file() {
+    if !folder.is_elsewhere() && RunFolder::journal_in(path).is_file() {
         remark(format_args!(
-            "What was computed until about a second before is in {folder}/rows.journal: `forwardstep report {folder}` writes the files \
+            "What was computed until about a second before is in {}: `forwardstep report {}` writes the files \
              from it when it can, and `--out` writes them elsewhere.",
-            folder = shown(path)
+            shown(&RunFolder::journal_in(path)),
+            shown(path)
         ));
     }
     status
@@ -233,6 +278,27 @@ pub(super) fn refused(error: OutputError) -> Status {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A stop while files were written made a run that was whole an interrupted one, whose missed goal nobody saw.
+    #[test]
+    fn regress_a_run_that_is_whole_is_not_interrupted_by_who_comes_late() {
+        let (completed, interrupted) = (Ending::Completed, Ending::Interrupted { t_s: 1.0 });
+        for asked in [None, Some(Status::Interrupted), Some(Status::Terminated)] {
+            let stopped = asked.unwrap_or(Status::Interrupted);
+            for (ending, lost, missed, cut_short, wanted) in [
+                (&completed, false, false, false, Status::Fine),
+                (&completed, false, true, false, Status::Missed),
+                (&completed, true, true, false, Status::BadInput),
+                (&completed, false, true, true, stopped),
+                (&interrupted, false, true, false, stopped),
+                (&interrupted, true, false, false, Status::BadInput),
+                (&Ending::CutOff { t_s: 1.0 }, false, false, false, stopped),
+            ] {
+                let found = status(ending, lost, missed, cut_short, asked);
+                assert_eq!(found, wanted, "{ending:?} {lost} {missed} {cut_short} {asked:?}");
+            }
+        }
+    }
 
     #[test]
     fn shapes_that_are_left_out_for_one_reason_are_told_once() {

@@ -3,7 +3,7 @@
 use forwardstep::io::output::{Accepted, Deployment, Rule, SamplingLimit, Trial};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::VelocitySensor;
+use forwardstep::sim::{SetupError, VelocitySensor};
 
 use crate::arguments::SamplingLimitOptions;
 use crate::console::{Console, DIM, Plain, complain};
@@ -25,11 +25,11 @@ const SHORTER: &str = "the scenario itself runs in continuous time; to find a pe
                        `time.end_s` be shorter";
 
 /// Measures the longest period with which scenarios still work, beside what rules allow.
-pub(crate) fn sampling_limit(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn finish(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn sampling_limit(
+    options: &SamplingLimitOptions,
+    kinds: &Kinds,
+    console: &mut Console,
+) -> Result<Status, Status> {
     let mut status = Status::Fine;
     if options.table {
         console.line("| Scenario | Torque late by | Velocity | Rule, ms | Measured, ms | Rule / measured |");
@@ -49,7 +49,7 @@ fn finish(options: &SamplingLimitOptions, kinds: &Kinds, console: &mut Console) 
             let found = match SamplingLimit::measure(&scenario.setup, *deployment, accepted, &mut tell) {
                 Ok(found) => found,
                 // Of all ways to sample those that the laws have no use for, which measure no velocity.
-                Err(_) if deployments.len() > 1 && deployment.filter_hz.is_some() => continue,
+                Err(SetupError::VelocityUnused { .. }) if deployments.len() > 1 => continue,
                 Err(error) if scenario.setup.control.is_some() => return Err(complain(&Plain::new(error))),
                 Err(error) => {
                     let said = format!("with the samples that are tried: {error}");
@@ -82,7 +82,8 @@ fn deployments(options: &SamplingLimitOptions, scenario: &Scenario) -> Vec<Deplo
 
 fn tried(trial: Trial) -> String {
     let Trial { period_s, peak_error, remains, .. } = trial;
-    let period = ms(Some(period_s));
+    // Periods that are tried may differ by half of what the one that is looked for is found to.
+    let period = to_digits(1e3 * period_s, 4);
     if peak_error.is_finite() {
         format!("{DIM}  {period} ms: |s| ≤ {peak_error:.3}, {remains:.2e} remains at the end{DIM:#}")
     } else {
@@ -108,7 +109,7 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
         if found.peak_error.is_finite() { format!("|s| ≤ {:.3}, and ", found.peak_error) } else { String::new() };
     console.line(format_args!(
         "  measured   {} ms: {bounded}at most {:.2e} remains at the end; {} runs",
-        ms(found.measured_s),
+        found.measured_s.map_or_else(|| "–".into(), |measured_s| to_digits(1e3 * measured_s, 4)),
         found.remains,
         found.trials.len()
     ));
@@ -136,7 +137,25 @@ fn row(scenario: &Scenario, deployment: Deployment, found: &SamplingLimit) -> St
 
 /// Milliseconds to three digits.
 fn ms(period_s: Option<f64>) -> String {
-    let Some(ms) = period_s.map(|period_s| 1e3 * period_s) else { return "–".into() };
-    let places = (2.0 - ms.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{ms:.places$}")
+    period_s.map_or_else(|| "–".into(), |period_s| to_digits(1e3 * period_s, 3))
+}
+
+fn to_digits(value: f64, digits: u32) -> String {
+    let places = (f64::from(digits) - 1.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.places$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The last of a bisection differ by half of its tolerance, 0.4 %.
+    #[test]
+    fn regress_periods_that_are_tried_can_be_told_apart() {
+        for period_s in [1.0e-3, 1.1e-2, 9.96e-2] {
+            let of = |period_s| Trial { period_s, peak_error: 1.0, peak_reference: 1.0, remains: 0.1, initial: 1.0 };
+            assert_ne!(tried(of(period_s)), tried(of(1.002 * period_s)));
+        }
+        assert_eq!((ms(Some(0.011)), to_digits(11.0, 4)), ("11.0".into(), "11.00".into()));
+    }
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 use forwardstep::check::smoothness::{
     self as input, Covered, Filters, LargestJump, OfOrder, Smoothness, filters, orders, traces,
 };
+use forwardstep::core::signal::superscript;
 use forwardstep::io::output::{
     EncodeError, SmoothScenario, SmoothnessDocument, SmoothnessFound, names, plot_filters, plot_orders,
 };
@@ -26,17 +27,12 @@ use crate::status::Status;
 const AROUND_S: f64 = 0.1;
 
 /// Reports how far derivatives of torques jump at switches and delay jumps: as scenarios are, for several orders, or under the baseline.
-pub(crate) fn smoothness(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    finish(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn finish(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn smoothness(options: &SmoothnessOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     if let Some(path) = &options.plot {
         replace::may_replace(path, is_own).map_err(|refused| complain(&refused))?;
     }
     let stop = Stop::listen();
-    let mut observer =
-        |_: Progress| if stop.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let mut observer = |_: Progress| stop.flow();
     // Whoever stops a run wants to hear nothing of it.
     let failed = |error: &dyn Display| stop.asked().unwrap_or_else(|| complain(&Plain::new(error.to_string())));
     let mut status = Status::Fine;
@@ -264,10 +260,6 @@ fn derivative(signal: Signal, r: usize) -> String {
     }
 }
 
-fn superscript(n: usize) -> char {
-    "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(n).unwrap_or('ⁿ')
-}
-
 fn sized(setup: &Setup, jump: LargestJump, r: usize) -> String {
     in_unit(jump.size, &unit_of(setup, Some(jump)), r)
 }
@@ -305,5 +297,17 @@ fn digits(value: f64) -> String {
         0.0 => "0".into(),
         size if (1e-3..1e5).contains(&size) => format!("{value:.*}", places(value)),
         _ => format!("{value:.2e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From the tenth on all derivatives were called the same.
+    #[test]
+    fn regress_derivatives_of_high_orders_have_their_numbers() {
+        assert_eq!([0, 1, 2, 12].map(|r| derivative(Signal::Torque, r)), ["τ", "dτ/dt", "d²τ/dt²", "d¹²τ/dt¹²"]);
+        assert_eq!(in_unit(1.0, "N m/s", 9), "1.00 N m/s¹⁰");
     }
 }

@@ -1,5 +1,6 @@
 //! Ctrl-C and its kin: a run that is told to stop ends in order.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
@@ -30,6 +31,11 @@ impl Stop {
     pub(crate) fn asked(&self) -> Option<Status> {
         let asked = self.asked.load(Ordering::Relaxed);
         [Status::Interrupted, Status::Terminated, Status::HungUp].into_iter().find(|status| *status as u8 == asked)
+    }
+
+    /// The same for what asks after every step whether to go on.
+    pub(crate) fn flow(&self) -> ControlFlow<()> {
+        if self.asked().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Does something that may take long and leaves nothing to be kept: a signal ends the program meanwhile.

@@ -1,6 +1,6 @@
 //! How a run ended, in words.
 
-use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Stiffness};
+use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Signal, Stiffness};
 use forwardstep_sim::setup::{AgentSetup, Method, Setup};
 use forwardstep_sim::{ChainLaw, ChainStep};
 
@@ -103,11 +103,19 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
         BreakdownCause::Vanished { value, .. } if breakdown.t_s <= 0.0 => {
             format!("is {} where it starts, and the law divides by it; start elsewhere", about(value + 0.0))
         }
-        BreakdownCause::Vanished { value, floor } => format!(
-            "is {value:.3e}: the law divides by it, and it must stay away from zero by {}; start elsewhere, or choose \
-             slower gains",
-            floor.abs()
-        ),
+        BreakdownCause::Vanished { value, floor } => {
+            let (what, unit) = match breakdown.signal {
+                Signal::Thrust => ("the thrust, which", " N"),
+                _ => ("it, and it", ""),
+            };
+            // A period that is too long brings everything out of step, and is looked at first.
+            let faster = if setup.control.is_some() { "sample faster, " } else { "" };
+            format!(
+                "is {value:.3e}{unit}: the law divides by {what} must stay away from zero by {}{unit}; {faster}start elsewhere, or choose \
+                 slower gains",
+                floor.abs()
+            )
+        }
         BreakdownCause::PositionLimit { value, limits: [low, high] } => {
             format!("left its limits [{low}, {high}]: it is {value}")
         }

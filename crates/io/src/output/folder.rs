@@ -142,6 +142,11 @@ impl RunFolder {
         &self.path
     }
 
+    /// Where a run that writes into `path` keeps its rows until it has ended.
+    pub fn journal_in(path: &Path) -> PathBuf {
+        path.join(JOURNAL)
+    }
+
     pub(super) fn disk(&self) -> &dyn Disk {
         &*self.disk
     }

@@ -2,11 +2,11 @@
 //! stays true.
 
 use forwardstep_check::prediction::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat};
+use forwardstep_core::signal::superscript;
 use forwardstep_sim::Setup;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::report::text::superscript;
 use super::{names, number};
 
 /// How much of the spread of all cascaded variables, and of all messages on their way, is left when, for certain and whatever the

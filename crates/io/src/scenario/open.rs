@@ -6,16 +6,14 @@ use miette::Diagnostic;
 use thiserror::Error;
 
 use super::kinds::Kinds;
+use super::run_folder::{self, JOURNAL};
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
-use super::{Scenario, ScenarioError, run_folder};
+use super::{Scenario, ScenarioError};
 use crate::SourceText;
 use crate::files::{ReadError, neighbours, read_text};
 use crate::shown;
 use crate::shown::one_line;
 use crate::wording::{choose, for_shell};
-
-/// The rows of a run that goes on, or was cut off.
-const JOURNAL: &str = "rows.journal";
 
 /// Why there is no scenario to run.
 #[derive(Clone, Debug, Error)]

@@ -15,6 +15,8 @@ use crate::files::{ReadError, read_text};
 
 /// The scenario's text in such a folder.
 pub(crate) const SCENARIO: &str = "scenario.toml";
+/// The rows of a run that goes on, or was cut off.
+pub(crate) const JOURNAL: &str = "rows.journal";
 /// Where the copies are listed.
 pub(crate) const MANIFEST: &str = "inputs/manifest.json";
 /// The format of the list.

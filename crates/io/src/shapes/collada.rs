@@ -6,13 +6,17 @@
 use std::collections::HashMap;
 
 use forwardstep_core::robot::tree::Placement;
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Node, NodeId, ParsingOptions};
 
 use super::triangles::{MOST_TRIANGLES, Triangles};
 
 const MOST_NODES: u32 = 1 << 21;
 /// Nodes inside each other.
 const DEEPEST: usize = 64;
+/// Parts may be used again and again, by nodes that name others: all that is read is so many times as long as the file at most,
+const MOST_TIMES: usize = 8;
+/// or so many bytes, where the file is small. Without a bound a few lines would be read for years.
+const MOST_ANEW: usize = 16 << 20;
 
 /// A linear map and a translation, row by row.
 type Map = [[f64; 4]; 3];
@@ -29,7 +33,8 @@ pub(super) fn triangles(bytes: &[u8]) -> Result<Triangles, String> {
         return Err("it is no COLLADA file".to_owned());
     }
     let ids = root.descendants().filter_map(|node| Some((node.attribute("id")?, node))).collect();
-    let mut file = File { ids, known: HashMap::new(), all: Triangles::default() };
+    let left = bytes.len().saturating_mul(MOST_TIMES).max(MOST_ANEW);
+    let mut file = File { ids, left, known: HashMap::new(), all: Triangles::default() };
     let metre = named(root, "asset").and_then(|asset| named(asset, "unit")?.attribute("meter")?.trim().parse().ok());
     let metre: f64 = metre.filter(|metre: &f64| metre.is_finite() && *metre > 0.0).unwrap_or(1.0);
     let unit = SAME.map(|row| row.map(|x| metre * x));
@@ -48,8 +53,10 @@ pub(super) fn triangles(bytes: &[u8]) -> Result<Triangles, String> {
 /// A file while it is read.
 struct File<'a, 'i> {
     ids: HashMap<&'a str, Node<'a, 'i>>,
-    /// Geometries by their ids.
-    known: HashMap<&'a str, Triangles>,
+    /// Bytes of elements that may still be looked at.
+    left: usize,
+    /// Geometries that were read.
+    known: HashMap<NodeId, Triangles>,
     all: Triangles,
 }
 
@@ -58,10 +65,17 @@ impl<'a, 'i> File<'a, 'i> {
         self.ids.get(url.strip_prefix('#')?).copied()
     }
 
+    /// Counts an element that is about to be read.
+    fn look(&mut self, at: Node<'a, 'i>) -> Result<(), String> {
+        self.left = self.left.checked_sub(at.range().len()).ok_or("it uses its own parts too many times")?;
+        Ok(())
+    }
+
     fn node(&mut self, node: Node<'a, 'i>, before: &Map, depth: usize) -> Result<(), String> {
         if depth > DEEPEST {
             return Err("its nodes are nested too deeply".to_owned());
         }
+        self.look(node)?;
         let mut here = *before;
         for child in node.children() {
             let own = match child.tag_name().name() {
@@ -91,12 +105,11 @@ impl<'a, 'i> File<'a, 'i> {
 
     /// Adds a geometry where it stands.
     fn geometry(&mut self, geometry: Node<'a, 'i>, place: &Map) -> Result<(), String> {
-        let id = geometry.attribute("id").unwrap_or_default();
-        if !self.known.contains_key(id) || id.is_empty() {
+        if !self.known.contains_key(&geometry.id()) {
             let read = self.mesh(geometry)?;
-            self.known.insert(id, read);
+            self.known.insert(geometry.id(), read);
         }
-        let Some(own) = self.known.get(id) else { return Ok(()) };
+        let Some(own) = self.known.get(&geometry.id()) else { return Ok(()) };
         let first = u32::try_from(self.all.points.len()).map_err(|_| "it has too many points")?;
         let moved = |p: &[f64; 3]| {
             [0, 1, 2].map(|k| place[k][0] * p[0] + place[k][1] * p[1] + place[k][2] * p[2] + place[k][3])
@@ -109,8 +122,11 @@ impl<'a, 'i> File<'a, 'i> {
         Ok(())
     }
 
-    fn mesh(&self, geometry: Node<'a, 'i>) -> Result<Triangles, String> {
+    fn mesh(&mut self, geometry: Node<'a, 'i>) -> Result<Triangles, String> {
+        self.look(geometry)?;
         let mut found = Triangles::default();
+        // Where the points of each `vertices` begin: its parts share them.
+        let mut begins: HashMap<NodeId, u32> = HashMap::new();
         let Some(mesh) = named(geometry, "mesh") else { return Ok(found) };
         for part in mesh.children() {
             let polygons = match part.tag_name().name() {
@@ -123,14 +139,25 @@ impl<'a, 'i> File<'a, 'i> {
             let stride = inputs().map(|input| offset(&input)).max().unwrap_or(0).saturating_add(1);
             let vertex = inputs().find(|input| input.attribute("semantic") == Some("VERTEX"));
             let vertex = vertex.ok_or("its polygons have no vertices")?;
-            let first = u32::try_from(found.points.len()).map_err(|_| "it has too many points")?;
-            found.points.extend(self.positions(vertex.attribute("source"))?);
+            let vertices = vertex.attribute("source").and_then(|url| self.target(url));
+            let vertices = vertices.ok_or("its vertices are not there")?;
+            let first = match begins.get(&vertices.id()) {
+                Some(first) => *first,
+                None => {
+                    let first = u32::try_from(found.points.len()).map_err(|_| "it has too many points")?;
+                    found.points.extend(self.positions(vertices)?);
+                    begins.insert(vertices.id(), first);
+                    first
+                }
+            };
             let mut polygon = |corners: &[u32]| {
                 for pair in corners.get(1..).unwrap_or_default().windows(2) {
                     found.faces.push([corners[0], pair[0], pair[1]].map(|k| k.saturating_add(first)));
                 }
             };
-            let rows = part.children().filter(|node| node.has_tag_name("p"));
+            // All polygons of a list stand in one row, beside how many corners each has.
+            let most_rows = if polygons == "polylist" { 1 } else { usize::MAX };
+            let rows = part.children().filter(|node| node.has_tag_name("p")).take(most_rows);
             for row in rows {
                 let numbers: Option<Vec<u32>> =
                     row.text().unwrap_or_default().split_ascii_whitespace().map(|word| word.parse().ok()).collect();
@@ -157,8 +184,8 @@ impl<'a, 'i> File<'a, 'i> {
     }
 
     /// The positions that `vertices` name.
-    fn positions(&self, source: Option<&str>) -> Result<Vec<[f64; 3]>, String> {
-        let vertices = source.and_then(|url| self.target(url)).ok_or("its vertices are not there")?;
+    fn positions(&mut self, vertices: Node<'a, 'i>) -> Result<Vec<[f64; 3]>, String> {
+        self.look(vertices)?;
         let mut inputs = vertices.children().filter(|node| node.has_tag_name("input"));
         let position = inputs.find(|input| input.attribute("semantic") == Some("POSITION"));
         // Some files name the positions without a `vertices` between.
@@ -167,6 +194,7 @@ impl<'a, 'i> File<'a, 'i> {
             None => Some(vertices),
         };
         let source = source.ok_or("its positions are not there")?;
+        self.look(source)?;
         let values = named(source, "float_array").and_then(list).ok_or("its positions are no numbers")?;
         let accessor = named(source, "technique_common").and_then(|node| named(node, "accessor"));
         let number = |name: &str| accessor.and_then(|accessor| accessor.attribute(name)?.parse::<usize>().ok());
@@ -239,11 +267,11 @@ pub(super) mod tests {
     #[test]
     fn a_scene_stands_where_its_nodes_put_it_in_metres() {
         let read = triangles(DAE.as_bytes()).unwrap();
-        assert_eq!((read.points.len(), read.faces.len()), (24, 10));
-        assert_eq!(read.faces[..3], [[0, 1, 2], [0, 2, 3], [4, 5, 6]]);
+        assert_eq!((read.points.len(), read.faces.len()), (8, 10));
+        assert_eq!(read.faces[..3], [[0, 1, 2], [0, 2, 3], [0, 1, 2]]);
         // (100, 100, 0) cm: twice as wide, turned by a quarter, lifted by 2 m; the inner node takes the lift back.
         near(read.points[2], [-1.0, 2.0, 2.0]);
-        near(read.points[14], [-1.0, 2.0, 0.0]);
+        near(read.points[6], [-1.0, 2.0, 0.0]);
     }
 
     #[test]
@@ -251,6 +279,42 @@ pub(super) mod tests {
         let read = triangles(DAE.replace("<instance_visual_scene url=\"#all\"/>", "").as_bytes()).unwrap();
         assert_eq!(read.faces.len(), 5);
         near(read.points[1], [1.0, 0.0, 0.0]);
+    }
+
+    /// A chain of nodes, each of which holds the next one twice: 2⁴⁰ nodes in four kilobytes, and none has a shape.
+    #[test]
+    fn regress_a_few_nodes_that_stand_for_very_many_are_refused() {
+        let chain: String = (0..40)
+            .map(|k| {
+                let next = format!("<instance_node url=\"#n{}\"/>", k + 1);
+                format!("<node id=\"n{k}\">{next}{next}</node>")
+            })
+            .collect();
+        let scene = "<node id=\"n40\"/></library_nodes><library_visual_scenes><visual_scene id=\"all\"><instance_node url=\"#n0\"/>";
+        let text = format!(
+            "<COLLADA><library_nodes>{chain}{scene}</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#all\"/></scene></COLLADA>"
+        );
+        assert_eq!(triangles(text.as_bytes()), Err("it uses its own parts too many times".into()));
+    }
+
+    /// Thousands of parts with the same points, which were read for each of them: 20 GB of points in two megabytes.
+    #[test]
+    fn regress_points_that_parts_share_are_read_once() {
+        let many = "0 0 0 1 0 0 1 1 0 ".repeat(40_000);
+        let parts = "<triangles><input semantic=\"VERTEX\" source=\"#places\"/><p>0 1 2</p></triangles>".repeat(9000);
+        let mesh = |parts: &str| {
+            format!(
+                "<geometry><mesh><source id=\"places\"><float_array>{many}</float_array></source>{parts}</mesh></geometry>"
+            )
+        };
+        let read = triangles(format!("<COLLADA>{}</COLLADA>", mesh(&parts)).as_bytes()).unwrap();
+        assert_eq!((read.points.len(), read.faces.len()), (120_000, 9000));
+        // Geometries may share them too, but not as many as would never end.
+        let others =
+            "<geometry><mesh><triangles><input semantic=\"VERTEX\" source=\"#places\"/></triangles></mesh></geometry>"
+                .repeat(9000);
+        let text = format!("<COLLADA>{}{others}</COLLADA>", mesh(""));
+        assert_eq!(triangles(text.as_bytes()), Err("it uses its own parts too many times".into()));
     }
 
     #[test]

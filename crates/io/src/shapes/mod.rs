@@ -8,9 +8,13 @@ mod place;
 mod triangles;
 mod visual;
 
+use std::collections::HashMap;
+use std::path::PathBuf;
+
 use forwardstep_core::robot::tree::Placement;
 use serde::{Deserialize, Serialize};
 
+use crate::one_line;
 use crate::scenario::Model;
 use place::Folders;
 use triangles::{MOST_TRIANGLES, Triangles};
@@ -97,7 +101,8 @@ impl Shapes {
         // What became too small to be seen is a capsule.
         let is_seen = |part: &Part| shapes.solids.get(part.solid).is_some_and(|solid| !solid.faces.is_empty());
         shapes.robots.iter_mut().for_each(|parts| parts.retain(is_seen));
-        (shapes, reading.left_out)
+        // They quote the files.
+        (shapes, reading.left_out.iter().map(one_line).collect())
     }
 }
 
@@ -111,6 +116,8 @@ fn same(a: &Model, b: &Model) -> bool {
 #[derive(Default)]
 struct Reading {
     solids: Vec<Triangles>,
+    /// The solids of meshes, by their files and the bits of what they are scaled by: many parts may be of one file, and it is read once.
+    meshes: HashMap<(PathBuf, [u64; 3]), Result<usize, String>>,
     triangles: usize,
     left_out: Vec<String>,
 }
@@ -140,18 +147,30 @@ impl Reading {
 
     /// The number of a solid.
     fn solid(&mut self, form: Form, folders: Option<&Folders>) -> Result<usize, String> {
-        let own = match form {
+        match form {
             Form::Mesh { file, scale } => {
-                let read = || {
-                    let folders = folders.ok_or("a shipped robot has no folder")?;
-                    Triangles::read(&file, &folders.read(&file)?)
-                };
-                read().map_err(|why| format!("the mesh `{file}`: {why}"))?.scaled(scale)
+                self.mesh(&file, scale, folders).map_err(|why| format!("the mesh `{file}`: {why}"))
             }
-            Form::Box(size) => Triangles::cuboid(size),
-            Form::Cylinder { radius, length } => Triangles::cylinder(radius, length),
-            Form::Sphere { radius } => Triangles::sphere(radius),
-        };
+            Form::Box(size) => self.kept(Triangles::cuboid(size)),
+            Form::Cylinder { radius, length } => self.kept(Triangles::cylinder(radius, length)),
+            Form::Sphere { radius } => self.kept(Triangles::sphere(radius)),
+        }
+    }
+
+    fn mesh(&mut self, name: &str, scale: [f64; 3], folders: Option<&Folders>) -> Result<usize, String> {
+        let path = folders.ok_or("a shipped robot has no folder")?.path(name)?;
+        let key = (path, scale.map(f64::to_bits));
+        if let Some(known) = self.meshes.get(&key) {
+            return known.clone();
+        }
+        let read = place::read(&key.0).and_then(|bytes| Triangles::read(name, &bytes));
+        let solid = read.and_then(|own| self.kept(own.scaled(scale)));
+        self.meshes.insert(key, solid.clone());
+        solid
+    }
+
+    /// The number of a solid with these triangles.
+    fn kept(&mut self, own: Triangles) -> Result<usize, String> {
         let own = coarse::distinct(&own.sound());
         if own.faces.is_empty() {
             return Err("a shape without an area".to_owned());
@@ -228,6 +247,28 @@ edges.ring = {}
         assert_eq!(serde_json::from_str::<Shapes>(&text).unwrap(), shapes);
         let broken = Shapes { agents: vec![Some(1)], ..shapes };
         assert!(!broken.is_sound());
+    }
+
+    /// A link of a chain drawn a hundred times.
+    #[test]
+    fn regress_a_mesh_of_many_shapes_is_read_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let urdf = folder.path().join("chain.urdf");
+        fs::write(&urdf, "<robot/>").unwrap();
+        fs::write(folder.path().join("link.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let folders = Folders::of(urdf.to_str().unwrap()).unwrap();
+        let mut reading = Reading::default();
+        let mut solid =
+            |file: &str, scale| reading.solid(Form::Mesh { file: file.to_owned(), scale: [scale; 3] }, Some(&folders));
+        assert_eq!((solid("link.obj", 1.0), solid("link.obj", 2.0)), (Ok(0), Ok(1)));
+        // The file changes, and what was read of it does not.
+        fs::write(folder.path().join("link.obj"), "v 0 0 0\nv 1 0 0\nv 0 7 0\nf 1 2 3\n").unwrap();
+        assert_eq!((solid("./link.obj", 1.0), solid("link.obj", 2.0)), (Ok(0), Ok(1)));
+        // Nor is a broken one read again and again.
+        fs::write(folder.path().join("broken.obj"), "f 1 2 3\n").unwrap();
+        let refused = solid("broken.obj", 1.0);
+        fs::write(folder.path().join("broken.obj"), "v 0 0 0\nv 1 0 0\nv 0 7 0\nf 1 2 3\n").unwrap();
+        assert!(refused.is_err() && solid("broken.obj", 1.0) == refused, "{refused:?}");
     }
 
     #[test]

@@ -28,19 +28,8 @@ impl Folders {
         Some(Folders { own, above })
     }
 
-    /// The bytes of the file that a URDF calls `name`.
-    pub(super) fn read(&self, name: &str) -> Result<Vec<u8>, String> {
-        let path = self.path(name)?;
-        let file = open_file(&path).map_err(|error| error.to_string())?;
-        let mut bytes = Vec::new();
-        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(format!("it is larger than {} MB", MOST_BYTES >> 20));
-        }
-        Ok(bytes)
-    }
-
-    fn path(&self, name: &str) -> Result<PathBuf, String> {
+    /// The file that a URDF calls `name`, with links resolved.
+    pub(super) fn path(&self, name: &str) -> Result<PathBuf, String> {
         let (asked, root) = if let Some(rest) = name.strip_prefix("package://") {
             let (package, rest) = rest.split_once('/').ok_or("it names a package and no file")?;
             let root = self.package(Some(package)).ok_or_else(|| {
@@ -75,6 +64,17 @@ impl Folders {
     }
 }
 
+/// The bytes of a file.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    let file = open_file(path).map_err(|error| error.to_string())?;
+    let mut bytes = Vec::new();
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(format!("it is larger than {} MB", MOST_BYTES >> 20));
+    }
+    Ok(bytes)
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
@@ -92,8 +92,8 @@ mod tests {
         }
         let urdf = arm.join("urdf/arm.urdf");
         let read = |name: &str| {
-            let read = Folders::of(urdf.to_str().unwrap()).unwrap().read(name);
-            read.map(|bytes| String::from_utf8(bytes).unwrap())
+            let path = Folders::of(urdf.to_str().unwrap()).unwrap().path(name);
+            path.and_then(|path| super::read(&path)).map(|bytes| String::from_utf8(bytes).unwrap())
         };
         let outside = Err("it lies outside of the URDF's folder and package, and is not read".to_owned());
         assert_eq!(read("near/b.stl"), Ok("arm/urdf/near/b.stl".into()));

@@ -64,7 +64,10 @@ pub enum ReferenceEvidence {
         order: usize,
     },
     /// Desired dynamics in which agents hear each other are no design that is known.
-    NoDesign,
+    NoDesign {
+        /// Whether graph, weights and delays are constant.
+        steady: bool,
+    },
     /// They are written in variables in which none is known.
     NoDesignInThese,
     /// Runs of a nonlinear protocol alone, from states that are drawn.
@@ -120,7 +123,7 @@ impl ReferenceEvidence {
             | ReferenceEvidence::Manipulability { .. } => Answer::Holds,
             ReferenceEvidence::Design { .. } | ReferenceEvidence::Stable { .. } => Answer::Holds,
             ReferenceEvidence::ComplexRoots { .. }
-            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesign { .. }
             | ReferenceEvidence::NoDesignInThese
             // A run is computed in floating point: no other program can replay it exactly, so it refutes nothing strictly.
             | ReferenceEvidence::Tried { .. } => Answer::NotShown,
@@ -146,7 +149,7 @@ impl ReferenceEvidence {
             | ReferenceEvidence::Design { .. }
             | ReferenceEvidence::Stable { .. }
             | ReferenceEvidence::Unstable { .. }
-            | ReferenceEvidence::NoDesign
+            | ReferenceEvidence::NoDesign { .. }
             | ReferenceEvidence::NoDesignInThese => Rigour::Exact,
         }
     }

@@ -1,6 +1,5 @@
 //! Graphs and their schedule.
 
-use forwardstep_sim::Exchange;
 use forwardstep_sim::leader::FollowingDesign;
 
 use super::names;
@@ -84,11 +83,9 @@ pub(super) fn words(evidence: &GraphEvidence) -> String {
             "a weight changes with time: the torque that follows from it is not the one proved".into()
         }
         GraphEvidence::Switches { graphs, exchange } => {
-            let instead = match exchange {
-                Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-                    "(a1), which is `reference.consensus` of order two"
-                }
-                Exchange::Position => "(24), which is `reference.consensus`",
+            let instead = match exchange.has_velocities() {
+                true => "(a1), which is `reference.consensus` of order two",
+                false => "(24), which is `reference.consensus`",
             };
             format!(
                 "{graphs} graphs take turns: the reference acceleration, and the torque with it, jumps at every switch; \

@@ -55,7 +55,12 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             "their polynomial is of degree {order}, and not Hurwitz: in the array of Routh the first entry of row {row}, counted from 0, is not \
              positive"
         ),
-        ReferenceEvidence::NoDesign => {
+        ReferenceEvidence::NoDesign { steady: true } => {
+            "by its roots the way in which agents hear each other is neither (24) nor (a5), so that no theorem of the paper speaks about them; \
+             graph, weights and delays are constant, and roots would tell, which this program does not compute for desired dynamics"
+                .into()
+        }
+        ReferenceEvidence::NoDesign { steady: false } => {
             "by its roots the way in which agents hear each other is neither (24) nor (a5), and nothing is known of where others lead over graphs \
              that switch and links that are late"
                 .into()

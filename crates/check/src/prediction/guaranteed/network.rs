@@ -1,8 +1,8 @@
 //! The positive network: every component moves towards others, whatever it is and whenever they were.
 
 use forwardstep_core::expression::Interval;
+use forwardstep_sim::Setup;
 use forwardstep_sim::graph::Weight;
-use forwardstep_sim::{Exchange, Setup};
 
 use super::super::cascade;
 use super::super::ideal::ideal;
@@ -66,10 +66,7 @@ impl Network {
         if kappa.len() > MOST_COMPONENTS {
             return Err(NoGuaranteedRate::TooLarge { components: kappa.len() });
         }
-        let sent = match ideal.exchange {
-            Exchange::Position => 1,
-            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => 2,
-        };
+        let sent = if ideal.exchange.has_velocities() { 2 } else { 1 };
         let window_s = ideal.network.max_delay_s();
         let network = Network { ideal, first, kappa, sent, window_s };
         Ok(network)
@@ -99,16 +96,15 @@ impl Network {
                 let rate = Interval { low: share * rate.low, high: share * rate.high };
                 (self.place(edge.from, part), Input { of: self.first[edge.from] + part, delay: edge.delay, rate })
             };
-            match self.ideal.exchange {
-                Exchange::Position => inputs[edge.to].push(input(0, 1.0)),
-                Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-                    let root = |agent: usize| self.ideal.agents[agent].roots_per_s.real[0];
-                    let share = (root(edge.from) / root(edge.to)).min(1.0);
-                    inputs[edge.to].push(input(1, share));
-                    if share < 1.0 {
-                        inputs[edge.to].push(input(0, 1.0 - share));
-                    }
-                }
+            if !self.ideal.exchange.has_velocities() {
+                inputs[edge.to].push(input(0, 1.0));
+                continue;
+            }
+            let root = |agent: usize| self.ideal.agents[agent].roots_per_s.real[0];
+            let share = (root(edge.from) / root(edge.to)).min(1.0);
+            inputs[edge.to].push(input(1, share));
+            if share < 1.0 {
+                inputs[edge.to].push(input(0, 1.0 - share));
             }
         }
         inputs

@@ -13,7 +13,7 @@
 //! where messages from before the start hold q_j(0) and q̇_j(0). The residue of Δ⁻¹b at p = 0 is the value agreed upon.
 
 use forwardstep_core::reference::polynomial;
-use forwardstep_sim::{AgentSetup, Exchange, Setup};
+use forwardstep_sim::{AgentSetup, Setup};
 use nalgebra::{Complex, DMatrix};
 
 use crate::fixed::Link;
@@ -44,7 +44,7 @@ impl Characteristic {
         for link in &links {
             *degree.get_mut(link.to)? += link.weight;
         }
-        let velocities = ideal.exchange == Exchange::PositionVelocity;
+        let velocities = ideal.exchange.has_velocities();
         // Of positions alone nothing is heard of it, so that any number will do.
         let first_root = |agent: &AgentSetup| agent.roots_per_s.first_real().or((!velocities).then_some(1.0));
         let scaled = |agent: &AgentSetup| {

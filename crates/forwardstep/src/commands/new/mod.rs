@@ -110,11 +110,7 @@ fn refused(error: NewError) -> Status {
 }
 
 /// Writes a commented scenario to start from.
-pub(crate) fn new(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Status {
-    write(options, kinds, console).unwrap_or_else(|status| status)
-}
-
-fn write(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
+pub(crate) fn new(options: &NewOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     if let Some(file) = options.file.as_ref().filter(|file| file.exists()) {
         return Err(refused(NewError::Exists(file.clone())));
     }
@@ -259,11 +255,8 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
 
 /// As the command line has it.
 fn choice(exchange: Exchange) -> ExchangeChoice {
-    match exchange {
-        Exchange::Position => ExchangeChoice::Position,
-        // Estimates are told of leaders alone, which have no choice.
-        Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => ExchangeChoice::PositionVelocity,
-    }
+    // What is told of leaders alone leaves no choice.
+    if exchange.has_velocities() { ExchangeChoice::PositionVelocity } else { ExchangeChoice::Position }
 }
 
 /// The robot of this key, else that in the file at this path, as the scenario at `scenario` has to name it.

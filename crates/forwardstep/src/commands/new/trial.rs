@@ -80,6 +80,23 @@ struct SecondBest {
     leaves: bool,
     times: f64,
     template: Template,
+    /// The gains in words.
+    described: String,
+}
+
+impl SecondBest {
+    /// That it is no more than that: which limits no trial kept to, and what was taken all the same.
+    fn words(&self) -> String {
+        let limits = match (self.leaves, self.times > 0.0) {
+            (true, true) => "limits of position and effort",
+            (true, false) => "position limits",
+            (false, _) => "effort limits",
+        };
+        let gains = self.described.trim_end_matches(": ");
+        format!(
+            "no trial kept within the {limits}, which runs report and do not enforce; what is written is the one that came nearest: {gains}"
+        )
+    }
 }
 
 /// Tries a scenario with several gains and horizons. `read` reads its text.
@@ -115,7 +132,7 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
                         return Ok(Tried { template: candidate, works: true });
                     }
                     if second_best.as_ref().is_none_or(|best| (leaves, times) < (best.leaves, best.times)) {
-                        second_best = Some(SecondBest { leaves, times, template: candidate });
+                        second_best = Some(SecondBest { leaves, times, template: candidate, described });
                     }
                 }
                 Went::TooShort { needs_s, .. } if needs_s <= longest_s && needs_s > candidate.end_s => {
@@ -133,8 +150,11 @@ pub(super) fn tried(template: Template, read: &dyn Fn(&Template) -> Result<Scena
         }
     }
     Ok(match second_best {
-        // Limits are reported, not enforced: the robots agree all the same.
-        Some(SecondBest { template, .. }) => Tried { template, works: true },
+        // Limits are reported, not enforced: the robots agree all the same, so that this is no failure.
+        Some(best) => {
+            remark(best.words());
+            Tried { template: best.template, works: true }
+        }
         None => {
             let mut template = template;
             let usual = says.sentences.first().cloned().unwrap_or_default();

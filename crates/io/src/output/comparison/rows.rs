@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use forwardstep_check::Answer;
 use forwardstep_check::smoothness::LargestJump;
+use forwardstep_core::signal::superscript;
 use forwardstep_sim::recording::{Ending, Signal};
 use toml::Table as Toml;
 
@@ -12,7 +13,7 @@ use super::super::metrics::{Disagreement, Gap, Metrics};
 use super::super::names;
 use super::super::packets::Link;
 use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate, Predictions};
-use super::super::report::text::{self, number, superscript};
+use super::super::report::text::{self, number};
 use super::super::table::Table;
 use super::{Compared, ComparedCell as Cell, ComparedRow as Row, RowGroup, words};
 use crate::wording::beginning;
@@ -296,7 +297,7 @@ fn jump_cell(s: &Subject<'_>, jump: LargestJump, r: usize, letter: &str) -> Cell
     let per = match power {
         0 => String::new(),
         1 => "/s".into(),
-        power => format!("/s{}", superscript(i32::try_from(power).unwrap_or(i32::MAX))),
+        power => format!("/s{}", superscript(power)),
     };
     // What is a pure number is still one per second.
     let unit = if unit.is_empty() && !per.is_empty() { "1" } else { unit };
@@ -323,7 +324,7 @@ fn first_jump(s: &Subject<'_>) -> Result<Cell, Cell> {
     let letter = match (jump.signal, r) {
         (Signal::Torque, 0) => "τ".to_owned(),
         (Signal::Torque, 1) => "dτ/dt".to_owned(),
-        (Signal::Torque, r) => format!("d{0}τ/dt{0}", superscript(i32::try_from(r).unwrap_or(i32::MAX))),
+        (Signal::Torque, r) => format!("d{0}τ/dt{0}", superscript(r)),
         (signal, 0) => signal.name(),
         (signal, r) => format!("derivative {r} of {}", signal.name()),
     };

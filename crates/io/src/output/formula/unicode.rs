@@ -2,6 +2,7 @@
 
 use forwardstep_check::certificate::decimal;
 use forwardstep_check::derivation::formula::{At, Formula, Sign, Symbol};
+use forwardstep_core::signal::superscript;
 
 /// A formula as one line.
 pub(crate) fn unicode(formula: &Formula) -> String {
@@ -81,17 +82,6 @@ fn letter(symbol: &Symbol) -> String {
 }
 
 fn raised(above: &str) -> String {
-    let digit = |c: char| match c {
-        '∗' => '*',
-        '−' => '⁻',
-        'T' => 'ᵀ',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4'..='9' => char::from_u32('⁴' as u32 + c as u32 - '4' as u32).unwrap_or(c),
-        other => other,
-    };
-    let text: String = above.chars().map(digit).collect();
+    let text = superscript(above.replace('∗', "*").replace('−', "-").replace('T', "ᵀ"));
     if above.chars().any(|c| c.is_alphabetic() && c != 'T') { format!("^{text}") } else { text }
 }

@@ -45,7 +45,7 @@ pub(crate) use read::{ReadJournal, read};
 pub use write::Journal;
 
 /// Its name in the folder of a run.
-pub(crate) const JOURNAL: &str = "rows.journal";
+pub(crate) use crate::scenario::run_folder::JOURNAL;
 
 const MAGIC: &[u8; 16] = b"forwardstep rows";
 const FORMAT: u32 = 1;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use forwardstep_core::signal::superscript;
 use plotters::backend::SVGBackend;
 use plotters::chart::ChartBuilder;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
@@ -12,7 +13,6 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, TextStyle};
 
 use super::super::error::EncodeError;
-use super::super::report::text::superscript;
 
 const INK: RGBColor = RGBColor(0x16, 0x19, 0x1f);
 const SOFT: RGBColor = RGBColor(0x50, 0x57, 0x63);
@@ -298,9 +298,13 @@ fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     let rough = (high - low) / count as f64;
     let size = 10_f64.powi(rough.log10().floor() as i32);
     let step = [1.0, 2.0, 2.5, 5.0].map(|m| m * size).into_iter().find(|step| *step >= rough).unwrap_or(10.0 * size);
+    // A power of ten may be below all numbers, or above.
+    if !(step > 0.0 && step.is_finite()) {
+        return Vec::new();
+    }
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
-    (first..=last.min(first + 100)).map(|k| k as f64 * step).collect()
+    (first..=last.min(first.saturating_add(100))).map(|k| k as f64 * step).collect()
 }
 
 fn decades(low: f64, high: f64) -> Vec<f64> {
@@ -326,5 +330,27 @@ fn power(exponent: f64) -> String {
         0 => "1".into(),
         1 => "10".into(),
         exponent => format!("10{}", superscript(exponent)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_lie_on_the_axis() {
+        assert_eq!(ticks(0.0, 1.0, 5), [0.0, 0.2, 0.4, 0.6, 0.8, 1.0].map(|v: f64| 0.2 * (v / 0.2).round()));
+        assert_eq!(ticks(-3.0, 12.0, 4), [0.0, 5.0, 10.0]);
+    }
+
+    /// The step of subnormal numbers was zero, and counting ticks overflowed.
+    #[test]
+    fn regress_an_axis_of_the_least_and_largest_numbers_has_ticks_or_none() {
+        for (low, high) in
+            [(5e-324, 1e-323), (0.0, 4e-322), (-1e-310, 1e-310), (f64::MIN, f64::MAX), (1e300, 1e300 * (1.0 + 1e-15))]
+        {
+            let found = ticks(low, high, 4);
+            assert!(found.len() <= 101 && found.iter().all(|v| v.is_finite()), "{low:e} {high:e}: {found:?}");
+        }
     }
 }

@@ -185,7 +185,7 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>) -> Markup {
                 }
                 @if adaptive { (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no estimate was recorded")) }
                 @if let Some(guaranteed) = cascade {
-                    @let dashed = if guaranteed { "; guaranteed for s ≡ 0 dashed" } else { "" };
+                    @let dashed = if guaranteed { "; dashed what is guaranteed for s ≡ 0, above which robots with tracking errors may lie" } else { "" };
                     (card("cascade", "Interval of the cascade", &format!("max − min of all ψ{dashed}"), ""))
                 }
                 @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }

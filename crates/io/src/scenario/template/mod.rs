@@ -136,13 +136,10 @@ impl Template {
         let roots: Vec<String> = (1..=self.order).map(|root| format!("{root}.0")).collect();
         let roots = commented(&format!("roots_per_s = [{}]", roots.join(", ")), "as many as the order, all positive");
         let has_choice = matches!(self.robot.task, TaskTemplate::Agree { exchange: None, .. });
-        let (word, other) = match self.exchange {
-            // Estimates are told of leaders alone.
-            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-                ("position_velocity", "or \"position\"")
-            }
-            Exchange::Position if has_choice => ("position", "or \"position_velocity\""),
-            Exchange::Position => ("position", "all that this law needs of others"),
+        let (word, other) = match self.exchange.has_velocities() {
+            true => ("position_velocity", "or \"position\""),
+            false if has_choice => ("position", "or \"position_velocity\""),
+            false => ("position", "all that this law needs of others"),
         };
         let exchange = commented(&format!("exchange = \"{word}\""), other);
         format!(

@@ -6,7 +6,6 @@
 mod systems;
 
 use forwardstep_core::reference::Choice;
-use forwardstep_sim::Exchange;
 use forwardstep_sim::delay::{Basis, Refuted, Unknown};
 use forwardstep_sim::leader::FollowingDesign;
 
@@ -55,11 +54,9 @@ fn graph(evidence: &GraphEvidence) -> Option<String> {
         }
         GraphEvidence::DeclaredPhases { .. } | GraphEvidence::RefutedSwitching { .. } => SHIPPED.into(),
         GraphEvidence::VaryingWeight => "weights that are constant".into(),
-        GraphEvidence::Switches { exchange, .. } => match exchange {
-            Exchange::PositionVelocity | Exchange::Estimates | Exchange::Composite => {
-                "one graph, or `reference.consensus` with two roots, which is (a1)".into()
-            }
-            Exchange::Position => "one graph, or `reference.consensus`, which is (24)".into(),
+        GraphEvidence::Switches { exchange, .. } => match exchange.has_velocities() {
+            true => "one graph, or `reference.consensus` with two roots, which is (a1)".into(),
+            false => "one graph, or `reference.consensus`, which is (24)".into(),
         },
         GraphEvidence::InEveryGraph { .. } => "graphs that repeat".into(),
         GraphEvidence::Once { .. } => {
@@ -190,7 +187,7 @@ fn reference(evidence: &ReferenceEvidence) -> Option<String> {
         ReferenceEvidence::Unstable { .. } => {
             "a polynomial whose roots have negative real parts, as `roots_per_s` states them".into()
         }
-        ReferenceEvidence::NoDesign => {
+        ReferenceEvidence::NoDesign { .. } => {
             "`polynomial = { integrators = 1, roots_per_s = [...] }`, `coupling_polynomial` with the same roots and \
              no `heard`: this is (24), about which Theorem 3 speaks"
                 .into()
