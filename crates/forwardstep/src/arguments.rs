@@ -136,8 +136,8 @@ pub(crate) struct Writing {
     /// Write the trajectory as CSV too
     #[arg(long)]
     pub(crate) csv: bool,
-    /// Say what changed V, cause by cause, where controllers sample: every step is then looked at, which takes about as long again
-    /// as the run, or three times as long with large robots
+    /// Say what changed V, cause by cause, where controllers sample: every step is then looked at, which takes as long again as the run with
+    /// small networks of arms, and ten to twenty times as long with chains and vehicles
     #[arg(long)]
     pub(crate) balance: bool,
     /// Predict the course of agreement whatever that takes; otherwise large networks over long times are run without

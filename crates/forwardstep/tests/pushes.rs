@@ -103,7 +103,7 @@ fn val_the_table_of_manipulability_is_what_runs_say() {
                 [written, printed].map(|row| row[cell].trim_end_matches(" /s").parse::<f64>().unwrap())
             });
             assert!(
-                (theory[0] - theory[1]).abs() < 1.5e-6 && (measured[0] - measured[1]).abs() < 1.5e-6,
+                (theory[0] - theory[1]).abs() < 1.5e-5 && (measured[0] - measured[1]).abs() < 1.5e-5,
                 "{printed:?}"
             );
             assert!((theory[1] - measured[1]).abs() <= 3e-6 + 1e-3 * theory[1].abs(), "{printed:?}");
@@ -128,10 +128,10 @@ fn manipulability_says_in_words_what_a_push_does_and_why_it_cannot() {
     let here = folder();
     let said = stdout(&forwardstep(&here, &["manipulability", "--lambda", "0,4", "--on", "arm-3"]).success());
     assert!(
-        said.contains("\n  λ = 4: degree 1, gain 0.026042\n") && said.contains("arm-3 is pushed with 0.01 on"),
+        said.contains("\n  λ = 4: degree 1, gain 0.02604\n") && said.contains("arm-3 is pushed with 0.01 N m on"),
         "{said}"
     );
-    assert!(said.contains("theory      0.026042 /s, measured 0.026042 /s"), "{said}");
+    assert!(said.contains("theory      0.02604 /s, measured 0.02604 /s"), "{said}");
     for (arguments, why) in [
         (&["six-arms"][..], "the graph switches"),
         (&["remark-4", "--on", "arm-9"], "no agent is called `arm-9`; there are arm-1, arm-2"),

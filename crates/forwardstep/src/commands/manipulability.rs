@@ -4,7 +4,8 @@ use forwardstep::check::manipulability::{LowFrequency, Manipulability, Measured,
 use forwardstep::io::output::names;
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{Adaptive, Setup};
+use forwardstep::sim::quantity::{number, rounded};
+use forwardstep::sim::{Adaptive, Setup, Signal};
 use thiserror::Error;
 
 use super::stop::Stop;
@@ -14,6 +15,8 @@ use crate::status::Status;
 
 /// How long the push that ends lasts, s.
 const PUSH_S: f64 = 1.0;
+/// So many axes are told of where it is pushed.
+const MOST_AXES: usize = 8;
 
 /// No agent has the name given.
 #[derive(Debug, Error)]
@@ -37,15 +40,15 @@ pub(crate) fn manipulability(
     for name in &options.scenarios {
         let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
         let trial = trial(options, &scenario.setup)?;
-        if !options.table {
-            head(&scenario, trial, console);
-        }
-        for lambda in &options.lambda {
+        for (k, lambda) in options.lambda.iter().enumerate() {
             let mut setup = scenario.setup.clone();
             setup.agents.iter_mut().for_each(|agent| agent.manipulability = *lambda);
-            let theory = Manipulability::of(&setup, trial.agent, trial.axis)
-                .map_err(|error| refuse(&setup, &error))?
-                .low_frequency();
+            let transfer =
+                Manipulability::of(&setup, trial.agent, trial.axis).map_err(|error| refuse(&setup, &error))?;
+            let theory = transfer.low_frequency();
+            if k == 0 && !options.table {
+                head(&scenario, trial, transfer.posture(), console);
+            }
             let found = measure(&setup, trial, &mut |_| stop.flow());
             if let Some(status) = stop.asked() {
                 return Err(status);
@@ -92,19 +95,28 @@ fn trial(options: &ManipulabilityOptions, setup: &Setup) -> Result<Trial, Status
     found.map(of).ok_or_else(|| complain(&Plain::new(NoSuchAgent { name: name.clone(), known: known() })))
 }
 
-fn head(scenario: &Scenario, trial: Trial, console: &mut Console) {
+fn head(scenario: &Scenario, trial: Trial, posture: &[f64], console: &mut Console) {
     let setup = &scenario.setup;
     let (agent, torque) = (&setup.agents[trial.agent], trial.torque);
     console.line(&scenario.title);
     let axis = agent.robot.axes.get(trial.axis).map_or("", |axis| axis.name.as_str());
+    let force = names::unit(setup, trial.agent, Signal::Torque, trial.axis);
     console.line(format_args!(
-        "{DIM}  {} is pushed with {torque} on {axis}, at rest: for {PUSH_S} s, and for all of {} s{DIM:#}",
+        "{DIM}  {} is pushed with {torque} {force} on {axis}, at rest where all agree: for {PUSH_S} s, and for all of {} s{DIM:#}",
         agent.name, setup.time.end_s
     ));
+    let place = |(axis, q): (usize, &f64)| {
+        let unit = names::unit(setup, trial.agent, Signal::Position, axis);
+        format!("{} {} {unit}", agent.robot.axes[axis].name, rounded(*q))
+    };
+    let place: Vec<String> = posture.iter().enumerate().take(MOST_AXES).map(place).collect();
+    let more = if posture.len() > MOST_AXES { ", …" } else { "" };
+    console.line(format_args!("{DIM}  it stands at {}{more}{DIM:#}", place.join(", ")));
 }
 
 /// λ, degree, gain, and by an impulse and by a constant torque what is predicted and what was measured.
 fn cells(lambda: f64, theory: LowFrequency, found: Measured) -> [String; 7] {
+    let digits = |value| digits(value, theory.gain);
     let (constant, moved) = if theory.degree > 0 {
         (format!("{} /s", digits(theory.by_impulse())), format!("{} /s", digits(found.drift)))
     } else {
@@ -114,9 +126,38 @@ fn cells(lambda: f64, theory: LowFrequency, found: Measured) -> [String; 7] {
     [lambda.to_string(), theory.degree.to_string(), gain, impulse, displaced, constant, moved]
 }
 
-/// Six places: what is below is no more than the solver's tolerance leaves.
-fn digits(value: f64) -> String {
-    // What rounds to zero has no sign.
-    let text = format!("{value:.6}");
-    if text.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) { text } else { "0".into() }
+/// Four digits of the gain: what is below is no more than the solver's tolerance, and the second order of the push, leave.
+fn digits(value: f64, gain: f64) -> String {
+    let last = 10_f64.powf(gain.abs().log10().floor() - 3.0);
+    if !(last > 0.0 && last.is_finite()) {
+        return number(rounded(value)).to_string();
+    }
+    let digits = (value / last).round();
+    if digits == 0.0 {
+        // What rounds to zero has no sign.
+        return "0".into();
+    }
+    if !(1e-4..1e7).contains(&gain.abs()) {
+        return format!("{:.3e}", digits * last);
+    }
+    format!("{value:.*}", (-last.log10().round()).max(0.0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regress_gains_of_heavy_machines_are_not_rounded_to_nothing() {
+        let found = [
+            (0.0325521, 0.0325521),
+            (5.912e-10, 5.912e-10),
+            (-1.2e-12, 5.9e-10),
+            (-2e-6, 0.0186),
+            (123.456, 123.456),
+            (1.5, 0.0),
+        ];
+        let shown = found.map(|(value, gain)| digits(value, gain));
+        assert_eq!(shown, ["0.03255", "5.912e-10", "0", "0", "123.5", "1.5"]);
+    }
 }

@@ -69,6 +69,9 @@ impl Job<'_> {
 
         let started = Instant::now();
         let mut balances = if writing.balance { InjectionWatch::of(setup) } else { None };
+        if writing.balance && balances.is_none() {
+            remark("--balance says nothing here: no controller samples, or no V of their laws is known.");
+        }
         let nothing = nothing_yet(scenario)?;
         let mut start = record(scenario, promise, &nothing, None);
         start.prediction = prediction.clone();

@@ -85,7 +85,7 @@ fn tried(trial: Trial) -> String {
     // Periods that are tried may differ by half of what the one that is looked for is found to.
     let period = to_digits(1e3 * period_s, 4);
     if peak_error.is_finite() {
-        format!("{DIM}  {period} ms: |s| ≤ {peak_error:.3}, {remains:.2e} remains at the end{DIM:#}")
+        format!("{DIM}  {period} ms: {}{remains:.2e} remains at the end{DIM:#}", bounded(peak_error, ", "))
     } else {
         format!("{DIM}  {period} ms: breaks down{DIM:#}")
     }
@@ -105,14 +105,24 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
             )
         }
     });
-    let bounded =
-        if found.peak_error.is_finite() { format!("|s| ≤ {:.3}, and ", found.peak_error) } else { String::new() };
-    console.line(format_args!(
-        "  measured   {} ms: {bounded}at most {:.2e} remains at the end; {} runs",
-        found.measured_s.map_or_else(|| "–".into(), |measured_s| to_digits(1e3 * measured_s, 4)),
-        found.remains,
-        found.trials.len()
-    ));
+    let accepted = format!("{}at most {:.2e} remains at the end", bounded(found.peak_error, ", and "), found.remains);
+    let runs = found.trials.len();
+    console.line(match found.measured_s {
+        Some(measured_s) => format!("  measured   {} ms: {accepted}; {runs} runs", to_digits(1e3 * measured_s, 4)),
+        None => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs} runs"),
+    });
+}
+
+/// "|s| ≤ 0.301, ", where there is an s, and a bound on it.
+fn bounded(peak_error: f64, joined: &str) -> String {
+    if peak_error == 0.0 || peak_error.is_infinite() {
+        return String::new();
+    }
+    if (1e-3..1e6).contains(&peak_error) {
+        format!("|s| ≤ {peak_error:.3}{joined}")
+    } else {
+        format!("|s| ≤ {peak_error:.2e}{joined}")
+    }
 }
 
 fn row(scenario: &Scenario, deployment: Deployment, found: &SamplingLimit) -> String {

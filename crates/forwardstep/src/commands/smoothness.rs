@@ -180,6 +180,10 @@ fn print_jumps(options: &SmoothnessOptions, scenario: &Scenario, found: &Smoothn
             "{DIM}  {} switches, and {} other instants at which a delay may jump{DIM:#}",
             found.switches, found.delay_jumps
         ));
+        if setup.agents.iter().any(|agent| !agent.pushes.is_empty()) {
+            console
+                .line(format_args!("{DIM}  told is what the network makes jump; what pushes do besides is not{DIM:#}"));
+        }
     }
     let kinds = found.kinds();
     for kind in kinds.iter().copied() {

@@ -160,7 +160,10 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
             format!("first {}, {} at {t_s:.2} s", named(cause), agent_name(setup, own.agent))
         }
     };
-    let changed = format!("{} to {} J: {}", short(start_j), short(end_j), terms.join(", "));
+    // V of chains is in a unit of its own.
+    let in_joules = all.iter().all(|own| unit(setup, own.agent, Signal::Lyapunov, 0) == "J");
+    let joules = if in_joules { " J" } else { "" };
+    let changed = format!("{} to {}{joules}: {}", short(start_j), short(end_j), terms.join(", "));
     vec![("V of all agents", changed), ("beyond the proof", first)]
 }
 

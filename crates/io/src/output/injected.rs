@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use forwardstep_check::{Injection, InjectionBalance, InjectionCourse};
+use forwardstep_check::{Injection, InjectionBalance, InjectionCourse, NAMED_SHARE};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -137,9 +137,16 @@ impl Injected {
         }
     }
 
-    /// The agent that was fed first, with the cause and the time.
+    /// The agent that was fed first, with the cause and the time: of those whose cause put in more than [`NAMED_SHARE`] of what V was of all
+    /// agents together, if there are such. One whose V begins at zero is fed by the first rounding.
     pub fn earliest(all: &[Injected]) -> Option<(&Injected, &FirstInjection)> {
-        let named = all.iter().filter_map(|own| Some((own, own.first.as_ref()?)));
-        named.min_by(|(_, a), (_, b)| a.t_s.total_cmp(&b.t_s))
+        let start_j: f64 = all.iter().map(|own| own.start_j).sum();
+        let counts = |own: &Injected, first: &FirstInjection| {
+            let cause = Injection::ALL.into_iter().find(|cause| cause.name() == first.cause);
+            cause.is_some_and(|cause| own.term_j(cause).abs() > NAMED_SHARE * start_j)
+        };
+        let named = || all.iter().filter_map(|own| Some((own, own.first.as_ref()?)));
+        let sooner = |a: &(&Injected, &FirstInjection), b: &(&Injected, &FirstInjection)| a.1.t_s.total_cmp(&b.1.t_s);
+        named().filter(|(own, first)| counts(own, first)).min_by(sooner).or_else(|| named().min_by(sooner))
     }
 }

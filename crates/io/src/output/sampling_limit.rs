@@ -206,8 +206,9 @@ fn trial(setup: &Setup, period_s: f64) -> Result<Trial, SetupError> {
         columns.flat_map(|column| &column.values).fold(0.0_f64, |most, value| most.max(value.abs()))
     };
     let peak_error = peak(Signal::TrackingError);
-    // Where there is no z, s alone tells nothing.
-    let leads = outcome.recording.columns.iter().any(|column| column.signal == Signal::Reference(0));
+    // Where there is no z, s alone tells nothing; nor does z without s.
+    let has = |signal: Signal| outcome.recording.columns.iter().any(|column| column.signal == signal);
+    let leads = has(Signal::Reference(0)) && has(Signal::TrackingError);
     let peak_reference = if leads { peak(Signal::Reference(0)) } else { f64::INFINITY };
     Ok(Trial { period_s, peak_error, peak_reference, remains: last, initial })
 }
