@@ -81,16 +81,12 @@ pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q
     let motion = TwoVelocity { q, dq: &rest, z: &rest, dz: &rest };
     let gravity = &evaluator.at(&own.robot.theta, motion, &rest).ok()?.model;
     let limits = limits(setup, agent)?;
-    let axes = gravity.iter().zip(limits).zip(&own.robot.axes).enumerate();
-    let loads = axes.filter(|(_, ((_, limit), _))| limit.is_finite()).map(|(axis, ((g, limit), named))| StaticLoad {
-        agent: Named::of(setup, agent),
-        axis,
-        axis_name: named.name.clone(),
-        torque: g.abs(),
-        limit,
-        postures: 1,
-    });
-    loads.reduce(worse)
+    let limited = gravity.iter().map(|g| g.abs()).zip(limits).enumerate().filter(|(_, (_, limit))| limit.is_finite());
+    let share = |(_, (torque, limit)): &(usize, (f64, f64))| torque / limit;
+    let worst = limited.reduce(|one, other| if share(&other) > share(&one) { other } else { one });
+    let (axis, (torque, limit)) = worst?;
+    let axis_name = own.robot.axes.get(axis)?.name.clone();
+    Some(StaticLoad { agent: Named::of(setup, agent), axis, axis_name, torque, limit, postures: 1 })
 }
 
 fn worse(one: StaticLoad, other: StaticLoad) -> StaticLoad {

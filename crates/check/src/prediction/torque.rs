@@ -198,14 +198,19 @@ fn of_agent(
     let stride = ideal.t_s.len().div_ceil(MOST_ROWS).max(1);
     let theta = &agent.robot.theta;
     let (mut evaluator, no_error) = (model.evaluator(), vec![0.0; axes]);
-    let at = |columns: &[&[f64]], row: usize| {
-        columns.iter().map(|column| column.get(row).copied()).collect::<Option<Vec<f64>>>()
+    // Numbers are many, so no row has lists of its own.
+    let [mut now_q, mut now_dq, mut now_ddq] = [(); 3].map(|()| vec![0.0; axes]);
+    let mut torques = Vec::with_capacity(axes);
+    let put = |columns: &[&[f64]], row: usize, now: &mut [f64]| {
+        columns.iter().zip(now).try_for_each(|(column, now)| Some(*now = *column.get(row)?))
     };
     for (row, t_s) in ideal.t_s.iter().enumerate() {
-        let (q, dq, ddq) = (at(&q, row)?, at(&dq, row)?, at(&ddq, row)?);
-        let motion = TwoVelocity { q: &q, dq: &dq, z: &dq, dz: &ddq };
+        put(&q, row, &mut now_q)?;
+        put(&dq, row, &mut now_dq)?;
+        put(&ddq, row, &mut now_ddq)?;
+        let motion = TwoVelocity { q: &now_q, dq: &now_dq, z: &now_dq, dz: &now_ddq };
         let along = &evaluator.at(theta, motion, &no_error).ok()?.model;
-        let mut torques = Vec::with_capacity(axes);
+        torques.clear();
         let begins = begins.as_ref().filter(|_| row == 0);
         for (axis, peak) in peaks.iter_mut().enumerate() {
             let value = begins.map_or(along[axis], |begins| begins[axis]);
