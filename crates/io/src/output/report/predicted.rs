@@ -8,7 +8,7 @@ use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate};
 use super::super::record::RunRecord;
-use super::text::{self, number, prose};
+use super::super::text::{self, number, prose};
 
 /// More rows would only repeat themselves.
 const MOST_TORQUES: usize = 24;
