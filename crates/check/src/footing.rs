@@ -7,11 +7,11 @@ use crate::hypothesis::Id;
 use crate::report::Report;
 use crate::theorem::Theorem;
 
-/// What delays break where agents do not take averages, as under the designs of the paper: how much of them others bear nobody knows.
-const OWN_DELAYS: &str = "a delay that grows for ever, such as T = t, or a link that loses every packet; of dynamics of your own a bounded delay \
+/// Of dynamics that do not average what agents receive, as the designs of the paper do, it is not known how long a delay they tolerate.
+const OWN_DELAYS: &str = "a delay that grows for ever, such as T = t, or a link that loses every packet; with dynamics of your own a bounded delay \
                           can break agreement too, and nothing here says how long it may be";
-/// The same of switches.
-const OWN_SWITCHES: &str = "switches that follow each other ever faster, without a shortest phase; of dynamics of your own graphs that take turns \
+/// Nor how fast graphs may take turns.
+const OWN_SWITCHES: &str = "switches that follow each other ever faster, without a shortest phase; with dynamics of your own graphs that take turns \
                             can break agreement too, and nothing here says how long each has to stay";
 
 /// What is said of one hypothesis.

@@ -5,8 +5,7 @@ mod suggest;
 pub(crate) mod usage;
 
 pub(crate) use experiments::{
-    AttackOptions, AttackTarget, CompareOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions,
-    SmoothnessOptions,
+    AttackOptions, CompareOptions, FalsifyOptions, ManipulabilityOptions, SamplingLimitOptions, SmoothnessOptions,
 };
 
 use std::path::PathBuf;

@@ -166,6 +166,18 @@ fn simulation_and_verdicts_touch_no_files() {
     never_says("check/src", &world);
 }
 
+/// What the page has in common with pictures for print and with words stands beside it.
+#[test]
+fn pictures_and_words_take_nothing_from_the_page() {
+    for below in ["plots", "comparison", "formula", "guarantee.rs", "prediction.rs", "residuals.rs", "explanation.rs"] {
+        for Source { path, code } in sources(&format!("io/src/output/{below}")) {
+            // A comparison has a page of its own.
+            let code = code.replace("report::side_by_side", "");
+            assert!(!code.contains("report::"), "{path} imports from the page");
+        }
+    }
+}
+
 #[test]
 fn no_library_reads_the_clock_on_the_wall() {
     for below in ["core/src", "sim/src", "check/src", "io/src"] {

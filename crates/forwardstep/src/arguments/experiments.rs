@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args, ValueEnum};
+use clap::{ArgGroup, Args};
 use clap_complete::engine::ArgValueCompleter;
 use thiserror::Error;
 
 use super::{NotBetween, SIX_ARMS, order, suggest};
-use crate::falsify::Target;
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareOptions {
@@ -72,56 +71,6 @@ pub(crate) struct AttackOptions {
     /// The file for what is found
     #[arg(long, value_name = "FILE", default_value = "forwardstep-attack.toml")]
     pub(crate) out: PathBuf,
-}
-
-/// What `attack` attacks: two designs inside their theorems, and some with a hypothesis broken.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum AttackTarget {
-    /// (a1), positions and velocities exchanged: how slow can agreement be?
-    A1,
-    /// (24) of order two, positions exchanged: how slow can agreement be?
-    #[value(name = "24")]
-    Positions,
-    /// (a1) with first roots κ₀ that differ from agent to agent: does it diverge?
-    A1FirstRoots,
-    /// (24) with a pair of complex roots, over graphs that switch: does it diverge?
-    #[value(name = "24-complex-roots")]
-    ComplexRoots,
-    /// (119) with weights that change with time: does it fail to follow?
-    #[value(name = "119-weights")]
-    Weights,
-    /// (110) over graphs in each of which the leader reaches some only: does an error stay?
-    #[value(name = "110-windows")]
-    Windows,
-    /// (110) over graphs that take turns, with delays besides: does an error stay?
-    #[value(name = "110-late-turns")]
-    LateTurns,
-    /// (122) over graphs that take turns, each with weights of its own: does the error grow?
-    #[value(name = "122-turns")]
-    Integrals,
-    /// Swarm tracking over graphs that take turns, all with the same weight: does the error grow?
-    SwarmTurns,
-}
-
-impl AttackTarget {
-    /// The design of this name, if it is one.
-    pub(crate) fn named(name: &str) -> Option<Target> {
-        AttackTarget::from_str(name, false).ok().map(AttackTarget::target)
-    }
-
-    fn target(self) -> Target {
-        match self {
-            AttackTarget::A1 => Target::Velocities,
-            AttackTarget::Positions => Target::Positions,
-            AttackTarget::A1FirstRoots => Target::FirstRoots,
-            AttackTarget::ComplexRoots => Target::ComplexRoots,
-            AttackTarget::Weights => Target::Weights,
-            AttackTarget::Windows => Target::Windows,
-            AttackTarget::LateTurns => Target::LateTurns,
-            AttackTarget::Integrals => Target::Integrals,
-            AttackTarget::SwarmTurns => Target::Swarm,
-        }
-    }
 }
 
 #[derive(Debug, Args)]

@@ -2,13 +2,14 @@
 
 use std::time::Duration;
 
+use clap::ValueEnum;
 use forwardstep::check::Id;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
 
 use super::replace;
 use super::stop::Stop;
-use crate::arguments::{AttackOptions, AttackTarget};
+use crate::arguments::AttackOptions;
 use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
 use crate::falsify::{Attack, GROWS, NoAttack, OwnAttack, OwnFound, Target};
 use crate::status::Status;
@@ -20,7 +21,7 @@ const LEFT: &str = " % is left; hypotheses that do not hold: ";
 pub(crate) fn attack(options: &AttackOptions, kinds: &Kinds, console: &mut Console) -> Result<Status, Status> {
     replace::may_replace(&options.out, replace::is_unedited).map_err(|refused| complain(&refused))?;
     let stop = Stop::listen();
-    match AttackTarget::named(&options.what) {
+    match Target::from_str(&options.what, false).ok() {
         Some(target) => design(target, options, &stop, console),
         None => scenario(options, kinds, &stop, console),
     }

@@ -54,16 +54,18 @@ pub(crate) fn manipulability(
                 return Err(status);
             }
             let found = found.map_err(|error| refuse(&setup, &error))?;
-            let cells = cells(*lambda, theory, found);
+            let words = Words::of(*lambda, theory, found);
             if options.table {
                 let adapts = setup.agents[trial.agent].law.is::<Adaptive>();
                 let law = if adapts { "adapted" } else { "known" };
-                console.line(format_args!("| {} | {law} | {} |", scenario.name, cells.join(" | ")));
+                console.line(words.row(&scenario.name, law));
             } else {
-                let [lambda, degree, gain, impulse, moved, constant, displaced] = cells;
+                let Words { lambda, degree, gain, by_impulse, by_constant } = words;
                 console.line(format_args!("  λ = {lambda}: degree {degree}, gain {gain}"));
-                console.line(format_args!("    an impulse of 1 displaces it by     {impulse}, measured {moved}"));
-                console.line(format_args!("    a constant torque of 1: theory      {constant}, measured {displaced}"));
+                let Response { theory, measured } = by_impulse;
+                console.line(format_args!("    an impulse of 1 displaces it by     {theory}, measured {measured}"));
+                let Response { theory, measured } = by_constant;
+                console.line(format_args!("    a constant torque of 1: theory      {theory}, measured {measured}"));
             }
         }
     }
@@ -114,16 +116,42 @@ fn head(scenario: &Scenario, trial: Trial, posture: &[f64], console: &mut Consol
     console.line(format_args!("{DIM}  it stands at {}{more}{DIM:#}", place.join(", ")));
 }
 
-/// λ, degree, gain, and by an impulse and by a constant torque what is predicted and what was measured.
-fn cells(lambda: f64, theory: LowFrequency, found: Measured) -> [String; 7] {
-    let digits = |value| digits(value, theory.gain);
-    let (constant, moved) = if theory.degree > 0 {
-        (format!("{} /s", digits(theory.by_impulse())), format!("{} /s", digits(found.drift)))
-    } else {
-        (digits(theory.by_constant()), digits(found.by_constant))
-    };
-    let [gain, impulse, displaced] = [theory.gain, theory.by_impulse(), found.by_impulse].map(digits);
-    [lambda.to_string(), theory.degree.to_string(), gain, impulse, displaced, constant, moved]
+/// What is predicted and what was measured.
+struct Response {
+    theory: String,
+    measured: String,
+}
+
+/// One λ in words.
+struct Words {
+    lambda: String,
+    degree: String,
+    gain: String,
+    by_impulse: Response,
+    by_constant: Response,
+}
+
+impl Words {
+    fn of(lambda: f64, theory: LowFrequency, found: Measured) -> Words {
+        let digits = |value| digits(value, theory.gain);
+        let by_constant = if theory.degree > 0 {
+            let [theory, measured] = [theory.by_impulse(), found.drift].map(|speed| format!("{} /s", digits(speed)));
+            Response { theory, measured }
+        } else {
+            let [theory, measured] = [theory.by_constant(), found.by_constant].map(digits);
+            Response { theory, measured }
+        };
+        let by_impulse = Response { theory: digits(theory.by_impulse()), measured: digits(found.by_impulse) };
+        let (lambda, degree) = (lambda.to_string(), theory.degree.to_string());
+        Words { lambda, degree, gain: digits(theory.gain), by_impulse, by_constant }
+    }
+
+    /// As a row of the table.
+    fn row(&self, scenario: &str, law: &str) -> String {
+        let Words { lambda, degree, gain, by_impulse, by_constant } = self;
+        let both = |response: &Response| format!("{} | {}", response.theory, response.measured);
+        format!("| {scenario} | {law} | {lambda} | {degree} | {gain} | {} | {} |", both(by_impulse), both(by_constant))
+    }
 }
 
 /// Four digits of the gain: what is below is no more than the solver's tolerance, and the second order of the push, leave.

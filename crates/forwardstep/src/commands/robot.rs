@@ -6,6 +6,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use forwardstep::io::robot::{Dynamics, JointDescription, RobotDescription, open_robot, open_state};
 use forwardstep::io::urdf::FrictionPolicy;
 use forwardstep::io::{UrdfOptions, UrdfRobot};
+use forwardstep::sim::quantity;
 
 use super::dynamics::dynamics;
 use crate::arguments::RobotOptions;
@@ -137,11 +138,10 @@ fn table<R: AsRef<[String]>>(rows: &[R], words: usize) -> String {
 
 /// To six digits, which is more than any file knows of a mass.
 fn short(value: f64) -> String {
-    number(format!("{value:.5e}").parse().unwrap_or(value))
+    number(quantity::rounded(value))
 }
 
 /// All digits, with a power of ten when the number is very large or small.
 fn number(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+    quantity::number(value).to_string()
 }

@@ -6,6 +6,7 @@
 
 use std::time::{Duration, Instant};
 
+use clap::ValueEnum;
 use forwardstep::check::{Id, check, ideal};
 use forwardstep::io::output::{Disagreement, Metrics};
 use forwardstep::sim::Setup;
@@ -17,26 +18,35 @@ use rand_chacha::rand_core::SeedableRng;
 use super::case::{Case, Course, Design, Phase, Switching, System, hundredths, pick};
 use super::judge::{late, read, run_unless};
 
-/// What is attacked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What `attack` attacks, by the names that it has on the command line: two designs inside their theorems, and some with a hypothesis broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Target {
-    /// (a5) of order two, which is (a1), over any graphs and delays.
+    /// (a5) of order two, which is (a1), positions and velocities exchanged: how slow can agreement be?
+    #[value(name = "a1")]
     Velocities,
-    /// (24) of order two.
+    /// (24) of order two, positions exchanged: how slow can agreement be?
+    #[value(name = "24")]
     Positions,
-    /// (a1) with first roots that differ.
+    /// (a1) with first roots κ₀ that differ from agent to agent: does it diverge?
+    #[value(name = "a1-first-roots")]
     FirstRoots,
-    /// (24) with a pair of complex roots, over graphs that switch.
+    /// (24) with a pair of complex roots, over graphs that switch: does it diverge?
+    #[value(name = "24-complex-roots")]
     ComplexRoots,
-    /// (119) with weights that change with time.
+    /// (119) with weights that change with time: does it fail to follow?
+    #[value(name = "119-weights")]
     Weights,
-    /// (110) over graphs in each of which the leader reaches some agents only.
+    /// (110) over graphs in each of which the leader reaches some only: does an error stay?
+    #[value(name = "110-windows")]
     Windows,
-    /// (110) over graphs that take turns, with delays besides.
+    /// (110) over graphs that take turns, with delays besides: does an error stay?
+    #[value(name = "110-late-turns")]
     LateTurns,
-    /// (122) over graphs that take turns, each with weights of its own.
+    /// (122) over graphs that take turns, each with weights of its own: does the error grow?
+    #[value(name = "122-turns")]
     Integrals,
-    /// Swarm tracking over graphs that take turns, all with the same weight.
+    /// Swarm tracking over graphs that take turns, all with the same weight: does the error grow?
+    #[value(name = "swarm-turns")]
     Swarm,
 }
 

@@ -54,11 +54,26 @@ impl Conclusion {
         let reached = last < bound || last == 0.0;
         let trend = Trend::of(&record.outcome.recording.t_s, &series.overall);
         // A goal may ask for less than that nothing is left.
-        let vanished = last < VANISHED * largest || last == 0.0;
-        let sentence = end.sentence(record.setup, [reached, vanished], trend);
+        let arrival = match reached {
+            true if last < VANISHED * largest || last == 0.0 => Arrival::Vanished,
+            true => Arrival::WithinGoal,
+            false => Arrival::Apart,
+        };
+        let sentence = end.sentence(record.setup, arrival, trend);
         let advice = if reached { Vec::new() } else { advice(record, metrics, trend, bound / last) };
         Some(Conclusion { reached, sentence, advice })
     }
+}
+
+/// How close agents came to each other, or to what they follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Arrival {
+    /// Next to nothing is left, and no more than the goal allows.
+    Vanished,
+    /// As close as the goal asks.
+    WithinGoal,
+    /// Not so close.
+    Apart,
 }
 
 /// What is furthest off at the last row.
@@ -109,7 +124,7 @@ impl End {
         Some(End { kind, axis, agents: agents_named, gap, speed })
     }
 
-    fn sentence(&self, setup: &Setup, [reached, vanished]: [bool; 2], trend: Trend) -> String {
+    fn sentence(&self, setup: &Setup, arrival: Arrival, trend: Trend) -> String {
         let End { kind, axis, agents, gap, speed } = self;
         let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
         let first = agents.first().copied().unwrap_or(0);
@@ -121,9 +136,10 @@ impl End {
             (Gap::Error, true) => ("following", format!("{size} from the leader")),
             (Gap::Error, false) => ("on target", format!("{size} from the target")),
         };
-        if reached {
-            let far = if vanished { "" } else { " as far as the goal asks" };
-            return format!("{done}{far}: {so_far} at most");
+        match arrival {
+            Arrival::Vanished => return format!("{done}: {so_far} at most"),
+            Arrival::WithinGoal => return format!("{done} as far as the goal asks: {so_far} at most"),
+            Arrival::Apart => {}
         }
         let still = match speed {
             Some(0.0) if *kind == Gap::Disagreement => ", at rest".to_owned(),

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::formula::{latex, mathml, unicode};
 use super::names;
-use super::report::text::prose;
+use super::text::prose;
 use crate::scenario::Scenario;
 
 /// The format of the JSON document; it grows when fields change their meaning or vanish, not when some are added.

@@ -69,6 +69,7 @@ mod smoothness;
 mod stored_table;
 pub mod summary;
 mod table;
+mod text;
 mod timeline;
 mod verdicts;
 

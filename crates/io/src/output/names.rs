@@ -88,6 +88,17 @@ pub fn gap_words(setup: &Setup, entry: usize) -> String {
     shared(owners.map(words)).map_or_else(|| format!("axis {}", entry + 1), |name| in_words(&name))
 }
 
+/// The name of an axis if all agents that have it agree, its number otherwise, for headings.
+pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
+    shared_words(setup, axis, axis_words)
+}
+
+/// The same of other words for an axis.
+pub(crate) fn shared_words(setup: &Setup, axis: usize, words: impl Fn(&Setup, usize, usize) -> String) -> String {
+    let owners = (0..setup.agents.len()).filter(|agent| axis < setup.agents[*agent].robot.axes.len());
+    shared(owners.map(|agent| words(setup, agent, axis))).unwrap_or_else(|| format!("axis {}", axis + 1))
+}
+
 /// The one name that all have, if there is one.
 pub(crate) fn shared(mut names: impl Iterator<Item = String>) -> Option<String> {
     let first = names.next()?;

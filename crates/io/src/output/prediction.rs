@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::decimate::between;
 use super::guarantee::Guarantee;
-use super::report::text::number as number_words;
+use super::text::number as number_words;
 use super::{names, number};
 
 /// Points of the course that are kept.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::explanation::TextLine;
 use super::formula::unicode;
 use super::names;
-use super::report::text::number as number_words;
+use super::text::number as number_words;
 
 /// Residuals line by line: for every design its agents and its equations, each with where its sides differ most.
 pub fn residual_lines(setup: &Setup, found: &[(Vec<usize>, Vec<Residual>)]) -> Vec<TextLine> {

@@ -2,18 +2,15 @@
 
 use std::fmt;
 
+use forwardstep_sim::quantity::number;
+
 /// A number as it is read: with a power of ten where decimals would be long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shown(f64);
 
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Shown(value) = *self;
-        if value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs()) {
-            write!(f, "{value}")
-        } else {
-            write!(f, "{value:e}")
-        }
+        number(self.0).fmt(f)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Cells, and rows of them.
 
-use super::super::report::text::number;
+use super::super::text::number;
 use super::{ComparedCell, ComparedRow, NONE, RowGroup};
 
 /// Entries of a value that are said.

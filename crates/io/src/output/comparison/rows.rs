@@ -13,8 +13,8 @@ use super::super::metrics::{Disagreement, Gap, Metrics};
 use super::super::names;
 use super::super::packets::Link;
 use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate, Predictions};
-use super::super::report::text::{self, number};
 use super::super::table::Table;
+use super::super::text::{self, number};
 use super::{Compared, ComparedCell as Cell, ComparedRow as Row, RowGroup, words};
 use crate::wording::beginning;
 

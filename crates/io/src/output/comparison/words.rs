@@ -6,7 +6,7 @@ use forwardstep_sim::Setup;
 use toml::{Table, Value};
 
 use super::super::names;
-use super::super::report::text::{count, number};
+use super::super::text::{count, number};
 
 /// The text of a scenario, as far as it can be read.
 pub(super) fn scenario(text: &str) -> Table {

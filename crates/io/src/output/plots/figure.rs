@@ -316,7 +316,7 @@ fn decades(low: f64, high: f64) -> Vec<f64> {
 fn tick(v: f64, step: f64) -> String {
     let largest = v.abs().max(step);
     if !(1e-3..1e5).contains(&largest) {
-        return if v.abs() < step * 1e-6 { "0".into() } else { super::super::report::text::number(v) };
+        return if v.abs() < step * 1e-6 { "0".into() } else { super::super::text::number(v) };
     }
     let mut places = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
     let scaled = step * 10_f64.powi(places as i32);

@@ -14,8 +14,8 @@ use super::metrics::{DisagreementSeries, Gap};
 use super::names;
 use super::palette::{self, Ground};
 use super::record::RunRecord;
-use super::report::{sections::shared_axis_words, text};
 use super::table::Table;
+use super::text;
 use super::timeline::Timeline;
 
 /// Points of all lines of a figure together.
@@ -75,7 +75,7 @@ impl<'a> Plots<'a> {
                 self.line(&grid, values, signal == Signal::Torque, self.colour(agent))
             };
             Panel {
-                title: shared_axis_words(setup, axis),
+                title: names::shared_axis_words(setup, axis),
                 x: Across::Time,
                 y: format!("{letter}{}", text::in_unit(&units)),
                 log: false,

@@ -4,7 +4,7 @@ use forwardstep_check::smoothness::{Filters, OfOrder, Trace};
 
 use super::super::error::EncodeError;
 use super::super::palette::{self, Ground};
-use super::super::report::text;
+use super::super::text;
 use super::figure::{Across, Figure, Line, Panel};
 
 /// What is beside the measured line.

@@ -12,13 +12,13 @@ use super::super::metrics::{DisagreementSeries, Gap, balance_residuals};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
+use super::super::text;
 use super::super::timeline::{self, Timeline};
 use super::cascade::CascadeIndex;
 use super::families::{Family, FamilyIndex};
 use super::network::{self, Gantt};
 use super::scene::Scene;
 use super::single::{Origins, Singles};
-use super::text;
 use crate::shapes::Solid;
 
 /// Points of a signal on the page, as far as space allows.

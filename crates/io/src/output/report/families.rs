@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::super::names;
 use super::super::table::Table;
-use super::text;
+use super::super::text;
 
 /// A signal with a card of its own.
 #[derive(Debug)]

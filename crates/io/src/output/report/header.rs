@@ -8,8 +8,8 @@ use super::super::conclusion::Conclusion;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
+use super::super::text::{number, prose};
 use super::sections::{BALANCE_WORDS, answer_style, ending, final_gap, so_far, unit_at};
-use super::text::{number, prose};
 
 /// Letters of a title that is set smaller, so that it takes two lines or three.
 const LONG_TITLE: usize = 100;

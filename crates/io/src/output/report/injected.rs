@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::super::injected::Injected;
 use super::super::names;
 use super::super::record::RunRecord;
-use super::text::number;
+use super::super::text::number;
 
 /// More rows would only repeat themselves.
 const MOST_ROWS: usize = 24;

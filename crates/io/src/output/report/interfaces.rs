@@ -3,7 +3,7 @@
 use forwardstep_sim::setup::{AgentSetup, Setup};
 use maud::{Markup, html};
 
-use super::text::number;
+use super::super::text::number;
 
 /// Bytes of one number in a message.
 const BYTES: usize = 8;

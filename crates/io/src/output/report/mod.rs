@@ -13,12 +13,11 @@ mod network;
 mod practical;
 mod predicted;
 mod scene;
-pub(crate) mod sections;
+mod sections;
 mod side_by_side;
 mod side_data;
 mod single;
 mod stage;
-pub(crate) mod text;
 
 use std::time::Duration;
 
@@ -36,6 +35,7 @@ use super::names;
 use super::palette::{self, Ground};
 use super::record::RunRecord;
 use super::table::Table;
+use super::text;
 use super::timeline::Timeline;
 pub(crate) use side_by_side::side_by_side;
 

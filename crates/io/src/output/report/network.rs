@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::super::packets::Link;
 use super::super::record::RunRecord;
+use super::super::text;
 use super::super::timeline::Timeline;
-use super::text;
 
 /// With more edges, a row stands for everything that one agent hears.
 const MOST_EDGE_ROWS: usize = 40;

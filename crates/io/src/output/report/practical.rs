@@ -8,7 +8,7 @@ use super::super::metrics::Metrics;
 use super::super::names;
 use super::super::practical::{Watched, WatchedLoad, WatchedMargin, WatchedPower};
 use super::super::record::RunRecord;
-use super::text::{self, number, prose};
+use super::super::text::{self, number, prose};
 
 /// Nothing where nothing is said.
 pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {

@@ -9,8 +9,8 @@ use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
 use super::super::prediction::{CourseFound, NEAR, PredictedCourse, PredictedRate, Predictions};
 use super::super::record::RunRecord;
+use super::super::text::{self, number, prose};
 use super::sections::last_tracking_error;
-use super::text::{self, number, prose};
 
 /// What is left is due to s where it is so many times what would be left without.
 const FAR_MORE: f64 = 10.0;

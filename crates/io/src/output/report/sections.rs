@@ -14,7 +14,7 @@ use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics}
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
-use super::text::{self, number, prose};
+use super::super::text::{self, number, prose};
 
 /// More rows would only repeat themselves.
 const MOST_LIMIT_ROWS: usize = 24;
@@ -269,7 +269,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 div.card.scroll {
                     h3 { "Peak " (names::input_words(setup).0) " " span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
-                        thead { tr { th {} @for axis in 0..most_axes { th { (shared_words(setup, axis, names::torque_words)) } } } }
+                        thead { tr { th {} @for axis in 0..most_axes { th { (names::shared_words(setup, axis, names::torque_words)) } } } }
                         tbody {
                             @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
                                 tr {
@@ -341,16 +341,6 @@ fn torque(setup: &Setup, agent: usize, axis: usize, value: f64, t_s: f64) -> Mar
             }
         }
     }
-}
-
-/// The name of an axis if all agents that have it agree, its number otherwise, for headings.
-pub(crate) fn shared_axis_words(setup: &Setup, axis: usize) -> String {
-    shared_words(setup, axis, names::axis_words)
-}
-
-fn shared_words(setup: &Setup, axis: usize, words: impl Fn(&Setup, usize, usize) -> String) -> String {
-    let owners = (0..setup.agents.len()).filter(|agent| axis < setup.agents[*agent].robot.axes.len());
-    names::shared(owners.map(|agent| words(setup, agent, axis))).unwrap_or_else(|| format!("axis {}", axis + 1))
 }
 
 /// How values of a set-valued sign were chosen, and how restless they were.

@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use super::super::comparison::{Compared, ComparedRow, Comparison, RowGroup};
 use super::super::palette::{self, Ground};
+use super::super::text::prose;
 use super::data::harmless_json;
 use super::side_data::{SideIndex, side_data};
 use super::stage::rates;
-use super::text::prose;
 use super::{PAGE_CSS, POLICY, STAGE_CSS, UPLOT_CSS, UPLOT_JS, colours_of, network};
 use crate::shown;
 

@@ -9,12 +9,12 @@ use super::super::disagreement::{DisagreementSeries, Gap, greater};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
+use super::super::text;
 use super::super::timeline::{self, Timeline};
 use super::data::{DelayIndex, GridOrigins, Grids, Series, block};
 use super::network::{self, Gantt};
 use super::scene::Scene;
 use super::single::Origins;
-use super::text;
 
 /// Points of each line.
 const POINTS: usize = 1200;

@@ -3,6 +3,8 @@
 use forwardstep_core::signal::superscript;
 use maud::{Markup, html};
 
+pub(crate) use crate::wording::count;
+
 /// Four significant digits, with a power of ten where the number is very small or large.
 pub(crate) fn number(x: f64) -> String {
     if x.is_nan() {
@@ -31,7 +33,7 @@ fn trim(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
-/// A unit as in [`super::super::names::unit`], set for reading: `rad/s²`, `N m`.
+/// A unit as in [`super::names::unit`], set for reading: `rad/s²`, `N m`.
 pub(crate) fn unit(plain: &str) -> String {
     match plain.split_once('^') {
         None if plain == "1" => String::new(),
@@ -58,11 +60,6 @@ pub(crate) fn units(all: impl Iterator<Item = String>) -> String {
 /// ` in rad` behind a name, and nothing for a pure number.
 pub(crate) fn in_unit(unit: &str) -> String {
     if matches!(unit, "" | "1") { String::new() } else { format!(" in {unit}") }
-}
-
-/// `1 agent`, `2 agents`.
-pub(crate) fn count(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
 }
 
 /// A sentence of the program, in which backticks stand around what is code; one without a partner stays as it is.
