@@ -202,7 +202,10 @@ fn of_agent(
     let [mut now_q, mut now_dq, mut now_ddq] = [(); 3].map(|()| vec![0.0; axes]);
     let mut torques = Vec::with_capacity(axes);
     let put = |columns: &[&[f64]], row: usize, now: &mut [f64]| {
-        columns.iter().zip(now).try_for_each(|(column, now)| Some(*now = *column.get(row)?))
+        for (column, now) in columns.iter().zip(now) {
+            *now = *column.get(row)?;
+        }
+        Some(())
     };
     for (row, t_s) in ideal.t_s.iter().enumerate() {
         put(&q, row, &mut now_q)?;
