@@ -490,4 +490,8 @@ fn what_changed_v_is_said_when_asked_and_adds_up() {
         let sum: f64 = terms.map(joule).iter().sum();
         assert!((joule("start_j") + sum - joule("end_j")).abs() < 1e-7 * joule("start_j"), "{own}");
     }
+    // Where nothing samples there is nothing to tell apart, which is said.
+    let continuous = adapted.replace("[control]\nsample_hz = 500\ntorque_limit = [200, 100]\n", "");
+    let told = stderr(&forwardstep(&with(&continuous), &["run", "two.toml", "--balance", "--out", "run"]));
+    assert!(told.contains("--balance says nothing here"), "{told}");
 }

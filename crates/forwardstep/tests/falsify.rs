@@ -155,6 +155,7 @@ fn attack_says_why_a_scenario_cannot_be_attacked() {
         ("same.toml", "agents start together"),
         ("nowhere.toml", "cannot read"),
         ("a2", "there is no scenario `a2`"),
+        ("a1-first-root", "designs that come with `attack`: a1, 24, a1-first-roots, "),
     ] {
         let failed = forwardstep(&folder, &["attack", scenario, "--seconds", "1"]).code(2);
         let said = String::from_utf8(failed.get_output().stderr.clone()).unwrap();

@@ -10,7 +10,7 @@ use forwardstep::io::shown;
 use super::replace;
 use super::stop::Stop;
 use crate::arguments::AttackOptions;
-use crate::console::{BAD, Console, DIM, GOOD, Plain, complain};
+use crate::console::{BAD, Console, DIM, GOOD, Plain, complain, remark};
 use crate::falsify::{Attack, GROWS, NoAttack, OwnAttack, OwnFound, Target};
 use crate::status::Status;
 
@@ -63,7 +63,14 @@ fn design(target: Target, options: &AttackOptions, stop: &Stop, console: &mut Co
 
 /// A scenario of the user's own, within the delays and schedules that it allows.
 fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut Console) -> Result<Status, Status> {
-    let scenario = kinds.open_scenario(&options.what).map_err(|error| complain(&error))?;
+    let scenario = kinds.open_scenario(&options.what).map_err(|error| {
+        let status = complain(&error);
+        if !options.what.contains(['.', '/']) {
+            let designs: Vec<String> = Target::value_variants().iter().filter_map(named).collect();
+            remark(format_args!("or one of the designs that come with `attack`: {}", designs.join(", ")));
+        }
+        status
+    })?;
     let (pieces, seed, limit) = (options.pieces as usize, options.seed, limit(options));
     let attack = OwnAttack { scenario: &scenario, kinds, pieces, seed, limit };
     let failed = |error| complain(&Plain::new(format!("`{}` cannot be attacked: {error}", options.what)));
@@ -93,6 +100,10 @@ fn scenario(options: &AttackOptions, kinds: &Kinds, stop: &Stop, console: &mut C
     saved(options, &format!("# {part}{LEFT}{words}\n{text}"), console)?;
     // That the interval never grows is what the proofs say.
     Ok(stop.asked().unwrap_or(if worst.grew { Status::Missed } else { Status::Fine }))
+}
+
+fn named(target: &Target) -> Option<String> {
+    Some(target.to_possible_value()?.get_name().to_owned())
 }
 
 fn in_pieces(pieces: usize) -> String {

@@ -168,4 +168,11 @@ mod tests {
         }
         assert_eq!((ms(Some(0.011)), to_digits(11.0, 4)), ("11.0".into(), "11.00".into()));
     }
+
+    #[test]
+    fn regress_nothing_is_said_of_s_where_there_is_none_and_no_number_has_300_digits() {
+        assert_eq!([0.0, f64::INFINITY].map(|peak| bounded(peak, ", ")), ["", ""]);
+        let said = [1.9731, 1e-12, 3.5e170].map(|peak| bounded(peak, ", "));
+        assert_eq!(said, ["|s| ≤ 1.973, ", "|s| ≤ 1.00e-12, ", "|s| ≤ 3.50e170, "]);
+    }
 }

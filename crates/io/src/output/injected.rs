@@ -150,3 +150,34 @@ impl Injected {
         named().filter(|(own, first)| counts(own, first)).min_by(sooner).or_else(|| named().min_by(sooner))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regress_an_agent_whose_v_begins_at_zero_is_not_the_first_that_is_fed() {
+        let fed = |agent, start_j, held_j, limited_j, cause: Injection, t_s| Injected {
+            agent,
+            start_j,
+            end_j: start_j + held_j + limited_j,
+            dissipated_j: 0.0,
+            held_j,
+            reconstructed_j: 0.0,
+            measured_j: 0.0,
+            limited_j,
+            rubbed_j: 0.0,
+            pushed_j: 0.0,
+            adaptation_j: 0.0,
+            residual_j: 0.0,
+            first: Some(FirstInjection { cause: cause.name().to_owned(), t_s }),
+        };
+        let (still, moved) =
+            (fed(0, 0.0, 2e-5, 0.0, Injection::Held, 0.01), fed(1, 90.0, 0.5, 400.0, Injection::Limited, 0.36));
+        let first = |all: &[Injected]| Injected::earliest(all).map(|(own, first)| (own.agent, first.t_s));
+        assert_eq!(first(&[still.clone(), moved]), Some((1, 0.36)));
+        // Where nothing is large, the first is.
+        let small = fed(2, 90.0, 1e-3, 0.0, Injection::Held, 0.02);
+        assert_eq!(first(&[small, still]), Some((0, 0.01)));
+    }
+}
