@@ -37,7 +37,7 @@ pub use measured::{Measured, NotMeasured, Trial, measure};
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Adaptive, AgentSetup, Setup, Start};
+use forwardstep_sim::{Adaptive, Setup, Start};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -221,27 +221,16 @@ impl Manipulability {
 /// Everybody at rest where all agree without s, with estimates that are right and nothing that pushes. Where that place is not known, it is
 /// where the agent that is pushed starts.
 fn at_agreement(setup: &Setup, agent: usize) -> Setup {
-    let offset = |own: &AgentSetup| {
-        let mut jets = vec![[0.0; 5]; own.robot.axes.len()];
-        if let Some(target) = &own.target {
-            target.jets(0.0, &mut jets);
-        }
-        jets.into_iter().map(|[at_start, ..]| at_start).collect::<Vec<f64>>()
-    };
     let without_s = ideal(setup).ok().and_then(|mut alike| {
         alike.agents.iter_mut().for_each(|own| own.manipulability = 0.0);
         Some(predict(&alike).ok()?.value)
     });
-    let agreed = without_s.unwrap_or_else(|| {
-        let own = &setup.agents[agent];
-        own.start.q.iter().zip(offset(own)).map(|(q, offset)| q - offset).collect()
-    });
+    let agreed = without_s.unwrap_or_else(|| setup.agents[agent].start.q.clone());
     let mut rest = setup.clone();
     for own in &mut rest.agents {
         let theta = own.robot.theta.clone();
         own.change_law(|law: &mut Adaptive| law.estimate_start = theta);
-        let q: Vec<f64> = agreed.iter().zip(offset(own)).map(|(agreed, offset)| agreed + offset).collect();
-        own.start = Start { dq: vec![0.0; q.len()], q, rest: Vec::new(), reference: Vec::new() };
+        own.start = Start { dq: vec![0.0; agreed.len()], q: agreed.clone(), rest: Vec::new(), reference: Vec::new() };
         own.enforce_limits = false;
         own.pushes.clear();
     }

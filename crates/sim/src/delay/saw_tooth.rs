@@ -22,7 +22,7 @@ impl SawTooth {
         let SawTooth { period_s, offset_s, .. } = *self;
         // Of 0.29 s and 0.01 s the rest is a hundredth less a rounding, and means none.
         let (rest_s, rounding_s) = (offset_s.rem_euclid(period_s), 4.0 * f64::EPSILON * offset_s.abs());
-        let rest_s = if rest_s <= rounding_s || rest_s >= period_s - rounding_s { 0.0 } else { rest_s };
+        let rest_s = if rest_s >= period_s - rounding_s { 0.0 } else { rest_s };
         index as f64 * period_s - rest_s
     }
 }
