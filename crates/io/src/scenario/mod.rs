@@ -230,52 +230,127 @@ impl Kinds {
         source: &SourceText,
         inputs: impl Into<Inputs>,
     ) -> Result<Scenario, ScenarioError> {
-        read(name, source, InputFolder::new(inputs.into()), self).map_err(|stop| stop.in_file(source))
+        let unread = Unread { name, source, kinds: self };
+        unread.read(InputFolder::new(inputs.into())).map_err(|stop| stop.in_file(source))
     }
 }
 
-fn read(name: &str, source: &SourceText, mut folder: InputFolder, kinds: &Kinds) -> Result<Scenario, Stop> {
-    let document = Document::parse(source)?;
-    Document::readable(&document.format()?, source)?;
-    let file = document.file(kinds).map_err(|fault| {
-        let mut others = others::others(&fault, source, kinds);
-        // Where nothing but keys is wrong, values are looked at as well.
-        let mended = others.mended.take().and_then(|mended| Some((mended.file(kinds).ok()?, mended)));
-        let values = mended.map(|(file, mended)| valued(name, source, &mended, file, &mut folder, kinds));
-        fault.beside(match values {
-            Some(Err(Stop::Here(values))) => others.with(values),
-            _ => others.found,
-        })
-    })?;
-    let mut scenario = valued(name, source, &document, file, &mut folder, kinds)?;
-    scenario.inputs = folder.into_read();
-    Ok(scenario)
+/// A scenario that is to be read.
+#[derive(Clone, Copy)]
+struct Unread<'a> {
+    name: &'a str,
+    source: &'a SourceText,
+    kinds: &'a Kinds,
 }
 
-/// What the tables of a scenario mean, else all that is wrong with its values.
-fn valued(
-    name: &str,
-    source: &SourceText,
-    document: &Document<'_>,
-    file: ScenarioFile,
-    folder: &mut InputFolder,
-    kinds: &Kinds,
-) -> Result<Scenario, Stop> {
-    meaning(name, source, document, file, folder, kinds).map_err(|stop| match stop {
-        Stop::Here(fault) => {
-            let reads = affordable(source, document, folder, kinds);
-            let others = impossible::others(&fault, document, reads, &mut |document| {
-                let Ok(file) = document.file(kinds) else { return Reading::Unreadable };
-                match meaning(name, source, document, file, folder, kinds) {
-                    Ok(_) => Reading::Sound,
-                    Err(Stop::Here(fault)) => Reading::Fault(fault),
-                    Err(Stop::Robot(_)) => Reading::Unreadable,
-                }
-            });
-            Stop::Here(fault.beside(others))
+impl Unread<'_> {
+    fn read(self, mut folder: InputFolder) -> Result<Scenario, Stop> {
+        let Unread { source, kinds, .. } = self;
+        let document = Document::parse(source)?;
+        Document::readable(&document.format()?, source)?;
+        let file = document.file(kinds).map_err(|fault| {
+            let mut others = others::others(&fault, source, kinds);
+            // Where nothing but keys is wrong, values are looked at as well.
+            let mended = others.mended.take().and_then(|mended| Some((mended.file(kinds).ok()?, mended)));
+            let values = mended.map(|(file, mended)| self.valued(&mended, file, &mut folder));
+            fault.beside(match values {
+                Some(Err(Stop::Here(values))) => others.with(values),
+                _ => others.found,
+            })
+        })?;
+        let mut scenario = self.valued(&document, file, &mut folder)?;
+        scenario.inputs = folder.into_read();
+        Ok(scenario)
+    }
+
+    /// What the tables of a scenario mean, else all that is wrong with its values.
+    fn valued(self, document: &Document<'_>, file: ScenarioFile, folder: &mut InputFolder) -> Result<Scenario, Stop> {
+        self.meaning(document, file, folder).map_err(|stop| match stop {
+            Stop::Here(fault) => {
+                let reads = affordable(self.source, document, folder, self.kinds);
+                let others = impossible::others(&fault, document, reads, &mut |document| {
+                    let Ok(file) = document.file(self.kinds) else { return Reading::Unreadable };
+                    match self.meaning(document, file, folder) {
+                        Ok(_) => Reading::Sound,
+                        Err(Stop::Here(fault)) => Reading::Fault(fault),
+                        Err(Stop::Robot(_)) => Reading::Unreadable,
+                    }
+                });
+                Stop::Here(fault.beside(others))
+            }
+            robot @ Stop::Robot(_) => robot,
+        })
+    }
+
+    /// What the tables of a scenario mean.
+    fn meaning(self, document: &Document<'_>, file: ScenarioFile, folder: &mut InputFolder) -> Result<Scenario, Stop> {
+        let Unread { name, source, kinds } = self;
+        let mut notices = Vec::new();
+        let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
+        let end_s = file.time.end_s.value;
+        let mut time = TimeSpan { end_s, record_every_s, record_at: RecordAt::Intervals };
+        document.checked(time.check())?;
+        time.record_at = rows::record_at(&file.time, file.control.as_ref(), folder)?;
+        let from = agents::Source { file: &file, document, kinds, text: source, end_s };
+        let populations = agents::populations(&from, folder)?;
+        let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
+        let names: Vec<String> = populations.iter().flat_map(|population| population.names()).cloned().collect();
+        let leading = reference(&file, (document, kinds), [&names, &axes], folder)?;
+        let mut read = agents::agents(&from, &populations, &leading, folder, &mut notices)?;
+        pushes::pushes(&file.external_wrenches, &mut read, end_s, source, folder, &mut notices)?;
+        let agents = read.agents;
+        let mut names = names;
+        let dynamics = leading.read.dynamics;
+        if let (Some(leader), Some(place)) = (dynamics.downcast().and_then(Following::motion), &file.leader) {
+            let name = leader.name.clone();
+            if names.contains(&name) {
+                let first_line = file.agents.span.start;
+                let (first_line, _) = source.line_column(first_line);
+                return Err(fault(place, ScenarioProblem::AgentTwice { name, first_line }).into());
+            }
+            names.push(name);
         }
-        robot @ Stop::Robot(_) => robot,
-    })
+        let vertices = (&names[..], agents.len());
+        let network = match &file.network {
+            Some(network) => {
+                network::network(&network.value, (document, kinds), vertices, end_s, source, folder, &mut notices)
+                    .map_err(|fault| fault.at(&network.span))?
+            }
+            None if dynamics.interface().family.has_targets() => Network::silent(names.len()),
+            None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
+        };
+        let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
+        let (reference, exchange) = (dynamics, leading.read.exchange);
+        let setup =
+            Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
+        // What a notice simulates has a meaning then.
+        recorded_columns(&setup).map_err(|error| {
+            let edge = match (&error, &file.network) {
+                (SetupError::LeaderHears { leader }, Some(network)) => network.value.edge_to(leader),
+                _ => None,
+            };
+            match edge {
+                Some(edge) => Fault::new(ScenarioProblem::Setup(error)).at(&edge),
+                None => document.refused(&setup, &read.entries, error),
+            }
+        })?;
+        notices.extend(Notice::coarse_sampling(&setup));
+        notices.extend(Notice::targets_beyond_limits(&setup));
+        notices.extend(Notice::starts_beyond_limits(&setup));
+        notices.extend(Notice::rotation(&setup));
+        notices.extend(Notice::stiff(&setup));
+        let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup)).transpose()?;
+        Ok(Scenario {
+            name: name.to_owned(),
+            source: source.clone(),
+            title: file.title.unwrap_or_else(|| name.to_owned()),
+            setup,
+            goal,
+            notices,
+            inputs: Vec::new(),
+            models: read.bodies.iter().map(Model::of).collect(),
+        })
+    }
 }
 
 /// How often a scenario that has no meaning may be read again to find out what else is wrong.
@@ -291,81 +366,6 @@ fn affordable(source: &SourceText, document: &Document<'_>, folder: &InputFolder
     });
     let work = source.text().len() + folder.bytes() + 1000 * usize::try_from(agents).unwrap_or(usize::MAX / 2000);
     (WORK / work.max(1)).min(MOST)
-}
-
-/// What the tables of a scenario mean.
-fn meaning(
-    name: &str,
-    source: &SourceText,
-    document: &Document<'_>,
-    file: ScenarioFile,
-    folder: &mut InputFolder,
-    kinds: &Kinds,
-) -> Result<Scenario, Stop> {
-    let mut notices = Vec::new();
-    let record_every_s = file.time.record_every_s.as_ref().map_or(RECORD_EVERY_S, |every| every.value);
-    let end_s = file.time.end_s.value;
-    let mut time = TimeSpan { end_s, record_every_s, record_at: RecordAt::Intervals };
-    document.checked(time.check())?;
-    time.record_at = rows::record_at(&file.time, file.control.as_ref(), folder)?;
-    let from = agents::Source { file: &file, document, kinds, text: source, end_s };
-    let populations = agents::populations(&from, folder)?;
-    let axes = populations.first().map_or_else(Vec::new, |population| population.axis_names());
-    let names: Vec<String> = populations.iter().flat_map(|population| population.names()).cloned().collect();
-    let leading = reference(&file, (document, kinds), [&names, &axes], folder)?;
-    let mut read = agents::agents(&from, &populations, &leading, folder, &mut notices)?;
-    pushes::pushes(&file.external_wrenches, &mut read, end_s, source, folder, &mut notices)?;
-    let agents = read.agents;
-    let mut names = names;
-    let dynamics = leading.read.dynamics;
-    if let (Some(leader), Some(place)) = (dynamics.downcast().and_then(Following::motion), &file.leader) {
-        let name = leader.name.clone();
-        if names.contains(&name) {
-            let first_line = file.agents.span.start;
-            let (first_line, _) = source.line_column(first_line);
-            return Err(fault(place, ScenarioProblem::AgentTwice { name, first_line }).into());
-        }
-        names.push(name);
-    }
-    let vertices = (&names[..], agents.len());
-    let network = match &file.network {
-        Some(network) => {
-            network::network(&network.value, (document, kinds), vertices, end_s, source, folder, &mut notices)
-                .map_err(|fault| fault.at(&network.span))?
-        }
-        None if dynamics.interface().family.has_targets() => Network::silent(names.len()),
-        None => return Err(fault(&file.reference, NetworkProblem::Missing).into()),
-    };
-    let control = file.control.as_ref().map(|file| control::control(file, axes.len())).transpose()?;
-    let (reference, exchange) = (dynamics, leading.read.exchange);
-    let setup = Setup { agents, reference, exchange, network, time, solver: solver(file.solver.as_ref())?, control };
-    // What a notice simulates has a meaning then.
-    recorded_columns(&setup).map_err(|error| {
-        let edge = match (&error, &file.network) {
-            (SetupError::LeaderHears { leader }, Some(network)) => network.value.edge_to(leader),
-            _ => None,
-        };
-        match edge {
-            Some(edge) => Fault::new(ScenarioProblem::Setup(error)).at(&edge),
-            None => document.refused(&setup, &read.entries, error),
-        }
-    })?;
-    notices.extend(Notice::coarse_sampling(&setup));
-    notices.extend(Notice::targets_beyond_limits(&setup));
-    notices.extend(Notice::starts_beyond_limits(&setup));
-    notices.extend(Notice::rotation(&setup));
-    notices.extend(Notice::stiff(&setup));
-    let goal = file.goal.as_ref().map(|file| goal::goal(file, &setup)).transpose()?;
-    Ok(Scenario {
-        name: name.to_owned(),
-        source: source.clone(),
-        title: file.title.unwrap_or_else(|| name.to_owned()),
-        setup,
-        goal,
-        notices,
-        inputs: Vec::new(),
-        models: read.bodies.iter().map(Model::of).collect(),
-    })
 }
 
 /// What produces the reference velocities of agents with these names and axes, and what is exchanged for it.
