@@ -43,7 +43,7 @@ pub use agents::{
 };
 pub use build::run;
 pub use closed_loop::{
-    Assembly, Block, Energy, Limited, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes,
+    Assembly, Block, Energy, LimitError, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes,
     reference_dynamics, sampled_loop, validate,
 };
 pub use inside::{Inside, Place, Watch, simulate_watched};

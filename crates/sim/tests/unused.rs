@@ -8,8 +8,8 @@ use crate::common::{every_kind, masses, sampled, single, switching, vehicles};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Outcome, Setup, SetupError, SpacecraftModel, TaskSpaceLaw, ThrustKind, VelocityQuantity,
-    VelocitySensor, simulate,
+    Adaptive, AgentSetup, LimitError, Outcome, Setup, SetupError, SpacecraftModel, TaskSpaceLaw, ThrustKind,
+    VelocityQuantity, VelocitySensor, simulate,
 };
 
 fn outcome(setup: &Setup) -> Result<Outcome, SetupError> {
@@ -120,7 +120,7 @@ fn limits_that_nothing_has_cannot_be_enforced() {
     for (name, setup, outcome) in changed(|agent| agent.enforce_limits = true) {
         let wheels = setup.agents[0].robot.kind.is::<SpacecraftModel>();
         match outcome {
-            Err(SetupError::NoEffortLimit { .. }) => assert!(!wheels, "{name}"),
+            Err(SetupError::Limit { error: LimitError::NoEffortLimit { .. }, .. }) => assert!(!wheels, "{name}"),
             other => assert!(wheels && other.is_ok(), "{name}: {other:?}"),
         }
     }
@@ -130,7 +130,7 @@ fn limits_that_nothing_has_cannot_be_enforced() {
         agent.robot.axes.iter_mut().for_each(|axis| axis.effort_limit = Some(10.0));
         agent.enforce_limits = true;
     }
-    assert!(matches!(outcome(&craft), Err(SetupError::NoEffortLimit { .. })));
+    assert!(matches!(outcome(&craft), Err(SetupError::Limit { error: LimitError::NoEffortLimit { .. }, .. })));
 }
 
 #[test]

@@ -17,7 +17,7 @@ pub(super) fn with_digest(text: &str) -> String {
     format!("{text}{DIGEST}{}\n", digest(text))
 }
 
-/// Whether a file is as a command saved it, and nobody edited it since.
+/// Whether a file is as a command saved it, without an edit since.
 pub(super) fn is_unedited(file: BufReader<File>) -> bool {
     const MOST_BYTES: u64 = 1 << 26;
     let mut text = String::new();

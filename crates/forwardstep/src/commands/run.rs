@@ -282,7 +282,7 @@ pub(super) fn refused(error: OutputError) -> Status {
 mod tests {
     use super::*;
 
-    /// A stop while files were written made a run that was whole an interrupted one, whose missed goal nobody saw.
+    /// A stop while files were written made a run that was whole an interrupted one, and hid its missed goal.
     #[test]
     fn regress_a_run_that_is_whole_is_not_interrupted_by_who_comes_late() {
         let (completed, interrupted) = (Ending::Completed, Ending::Interrupted { t_s: 1.0 });

@@ -7,8 +7,8 @@
 
 use std::ops::Range;
 
-use forwardstep_sim::SetupError;
 use forwardstep_sim::quantity::Requirement;
+use forwardstep_sim::{LimitError, SetupError};
 use toml::Spanned;
 use toml::de::{DeArray, DeValue};
 
@@ -157,12 +157,11 @@ fn is_at_odds(fault: &Fault) -> bool {
         error,
         SetupError::Length { .. }
             | SetupError::Entries { .. }
-            | SetupError::TorqueLimitCount { .. }
+            | SetupError::Limit { .. }
             | SetupError::NoManipulability { .. }
             | SetupError::Gain { .. }
             | SetupError::Push { .. }
             | SetupError::NotPushed { .. }
-            | SetupError::NoEffortLimit { .. }
             | SetupError::StartOfReference { .. }
             | SetupError::Memory { .. }
             | SetupError::RecordingTooLarge { .. }
@@ -360,7 +359,9 @@ fn is_of_length(problem: &ScenarioProblem) -> bool {
     match problem {
         ScenarioProblem::Value(value) if is_of_lists(value) => true,
         ScenarioProblem::System(_) | ScenarioProblem::Push(_) | ScenarioProblem::Derivatives { .. } => true,
-        ScenarioProblem::Setup(SetupError::Length { .. } | SetupError::TorqueLimitCount { .. }) => true,
+        ScenarioProblem::Setup(
+            SetupError::Length { .. } | SetupError::Limit { error: LimitError::Torques(_) | LimitError::Rates(_), .. },
+        ) => true,
         problem => length_of(problem).is_some(),
     }
 }

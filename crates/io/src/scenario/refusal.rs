@@ -4,7 +4,7 @@ use forwardstep_core::controller::ChainError;
 use forwardstep_core::expression::MOST_DERIVATIVES;
 use forwardstep_core::reference::RootsError;
 use forwardstep_sim::quantity::{QuantityError, Requirement, Sign, about};
-use forwardstep_sim::{Setup, SetupError};
+use forwardstep_sim::{LimitError, Setup, SetupError};
 
 use super::document::Document;
 use super::fault::Fault;
@@ -89,12 +89,10 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         SetupError::RootCount { error, .. } => {
             format!("give it {} roots; an agent may have `reference` with roots of its own", error.need)
         }
-        SetupError::TorqueLimitCount { error, .. } if error.need > 0 => {
-            "a single number stands for all axes".to_owned()
-        }
-        SetupError::TorqueLimitCount { .. } => {
-            "leave it out: what this robot does is not asked of it as torques of its axes".to_owned()
-        }
+        SetupError::Limit { error: LimitError::Torques(error) | LimitError::Rates(error), .. } => match error.need {
+            0 => "leave it out: what this robot does is not asked of it as torques of its axes".to_owned(),
+            _ => "a single number stands for all axes".to_owned(),
+        },
         SetupError::TargetDerivatives { known, .. } if *known < MOST_DERIVATIVES => format!(
             "give at most {known} roots, or the target as a formula: a curve through points has {known} derivatives, a formula as many \
              as are asked for"

@@ -9,6 +9,7 @@ use forwardstep_core::{Gain, GainError, LengthError, ResolvedGain};
 
 use super::columns::Columns;
 use super::error::SetupError;
+use super::limit_error::LimitError;
 use super::members;
 use super::pair::{Joined, Pair};
 use super::robot_batch::Member;
@@ -329,12 +330,8 @@ pub(super) fn effort_limits(own: &AgentSetup, torques: usize) -> Result<Option<V
         return Ok(None);
     }
     let limit = |axis: &Axis| {
-        let (agent, name) = (own.name.clone(), axis.name.clone());
-        match axis.effort_limit {
-            None => Err(SetupError::NoEffortLimit { agent, axis: name }),
-            Some(value) if value > 0.0 => Ok(value),
-            Some(value) => Err(SetupError::EffortLimit { agent, axis: name, value }),
-        }
+        let error = || LimitError::NoEffortLimit { axis: axis.name.clone() };
+        axis.effort_limit.ok_or_else(|| SetupError::Limit { agent: own.name.clone(), error: error() })
     };
     let limits: Vec<f64> = own.robot.axes.iter().map(limit).collect::<Result<_, _>>()?;
     LengthError::check("the effort limits", torques, limits.len())

@@ -1,6 +1,6 @@
 //! What makes a setup meaningless.
 
-use forwardstep_core::agent::{FilterError, LimiterError};
+use forwardstep_core::agent::FilterError;
 use forwardstep_core::controller::ChainError;
 use forwardstep_core::plant::SpacecraftError;
 use forwardstep_core::reference::{BacksteppingError, DesiredError, RootsError};
@@ -9,30 +9,13 @@ use forwardstep_core::sampled::RecipeError;
 use forwardstep_core::{GainError, LengthError};
 use thiserror::Error;
 
+use super::limit_error::LimitError;
 use super::velocity_quantity::VelocityQuantity;
 use crate::network::NetworkError;
 use crate::push::PushError;
 use crate::quantity::{Name, Path, QuantityError, about, entries, number};
 use crate::setup::Exchange;
 use crate::trajectory::TrajectoryError;
-
-/// What limits of actuators are of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Limited {
-    /// Torques.
-    Torque,
-    /// How fast torques change.
-    Rate,
-}
-
-impl Limited {
-    pub(super) fn words(self) -> &'static str {
-        match self {
-            Limited::Torque => "the limit of torques",
-            Limited::Rate => "the limit of torque rates",
-        }
-    }
-}
 
 /// Why a setup cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -148,15 +131,13 @@ pub enum SetupError {
         /// What its law is called.
         law: &'static str,
     },
-    /// Limits of actuators where the robot has another number of torques.
+    /// Limits of actuators.
     #[error("agent `{agent}`: {error}")]
-    TorqueLimitCount {
+    Limit {
         /// The agent.
         agent: String,
-        /// What they limit.
-        of: Limited,
-        /// How many there are, and how many there must be.
-        error: LengthError,
+        /// What is wrong.
+        error: LimitError,
     },
     /// A manipulability gain beside a law that has none.
     #[error("agent `{agent}`: {law} has no manipulability gain, but {value} is given")]
@@ -243,14 +224,6 @@ pub enum SetupError {
         push: usize,
         /// What is wrong.
         error: PushError,
-    },
-    /// Limits are to be enforced, but an axis has none.
-    #[error("agent `{agent}`: limits are to be enforced, but axis `{axis}` has no effort limit")]
-    NoEffortLimit {
-        /// The agent.
-        agent: String,
-        /// The axis.
-        axis: String,
     },
     /// A law that is made for something else.
     #[error("agent `{agent}`: {law} is made for {made_for}")]
@@ -425,41 +398,6 @@ pub enum SetupError {
     BoundsOfKnown {
         /// The agent.
         agent: String,
-    },
-    /// An effort limit that cannot be enforced.
-    #[error(
-        "agent `{agent}`: the effort limit of `{axis}` is {value}, but it must be positive where limits are enforced"
-    )]
-    EffortLimit {
-        /// The agent.
-        agent: String,
-        /// Its axis.
-        axis: String,
-        /// The limit, N m or N.
-        value: f64,
-    },
-    /// A torque limit that no step of the torques lies within.
-    #[error(
-        "agent `{agent}`: axis {axis} has the torque limit {limit}, which is below the step of the torques, {quantum}: no torque but zero can \
-         be given; raise the limit, or make the step smaller"
-    )]
-    LimitBelowQuantum {
-        /// The agent.
-        agent: String,
-        /// The axis, from zero.
-        axis: usize,
-        /// The limit, N m or N.
-        limit: f64,
-        /// The step, N m or N.
-        quantum: f64,
-    },
-    /// A torque limit of one agent.
-    #[error("agent `{agent}`: {error}")]
-    Limiter {
-        /// The agent.
-        agent: String,
-        /// What is wrong.
-        error: LimiterError,
     },
     /// What a sensor of velocities would do, where it has no part in anything.
     #[error(

@@ -3,7 +3,8 @@
 use forwardstep_core::controller::ChainError;
 use forwardstep_core::reference::BacksteppingError;
 
-use super::error::{Limited, SetupError};
+use super::error::SetupError;
+use super::limit_error::LimitError;
 use crate::quantity::Path;
 use crate::reference::{ReferenceDynamics, ReferenceFamily};
 use crate::setup::{AgentSetup, RECORD_EVERY_S, Setup, Solver};
@@ -59,8 +60,7 @@ impl SetupError {
             | SetupError::AxesDiffer { agent, .. }
             | SetupError::NoAxes { agent }
             | SetupError::Spacecraft { agent, .. }
-            | SetupError::NoEffortLimit { agent, .. }
-            | SetupError::EffortLimit { agent, .. }
+            | SetupError::Limit { agent, error: LimitError::NoEffortLimit { .. } | LimitError::EffortLimit { .. } }
             | SetupError::Chain { agent, error: ChainError::Expression(_) } => of(agent).key("robot"),
             SetupError::Chain {
                 agent,
@@ -79,10 +79,8 @@ impl SetupError {
             | SetupError::TipVelocity { agent }
             | SetupError::NotPushed { agent, .. } => of(agent).key("law"),
             SetupError::Push { agent, .. } => of(agent),
-            SetupError::Limiter { .. }
-            | SetupError::LimitBelowQuantum { .. }
-            | SetupError::TorqueLimitCount { of: Limited::Torque, .. } => "control.torque_limit".into(),
-            SetupError::TorqueLimitCount { of: Limited::Rate, .. } => "control.torque_rate_limit_per_s".into(),
+            SetupError::Limit { error: LimitError::Rates(_), .. } => "control.torque_rate_limit_per_s".into(),
+            SetupError::Limit { .. } => "control.torque_limit".into(),
             SetupError::VelocityFilter(_) => "control.velocity".into(),
             SetupError::VelocityUnused { quantity, .. } => Path::from("control").key(quantity.key()),
             // What was not asked for is not what is wrong.

@@ -100,7 +100,10 @@ impl Frictions {
     /// Sets friction at `now_s` in the state `x`, by what is `heard` then.
     pub(super) fn set(&mut self, now_s: f64, heard: &Heard, pushes: &mut Pushes, blocks: &mut [Block], x: &[f64]) {
         // The regular instants that this one is past or at.
-        self.set = self.set.max((now_s / self.period_s + ROUNDING) as u64 + 1);
+        self.set = self.set.max((now_s / self.period_s) as u64);
+        while self.next_s() <= now_s + ROUNDING * self.period_s {
+            self.set += 1;
+        }
         let h_s = self.next_s() - now_s;
         pushes.evaluate(now_s, x, blocks);
         // Agents that follow one another mostly share a block.

@@ -32,6 +32,7 @@ mod frictions;
 mod gain_rates;
 mod injected;
 mod leader_block;
+mod limit_error;
 mod members;
 mod pair;
 mod population;
@@ -52,8 +53,9 @@ mod velocity_quantity;
 
 pub(crate) use assemble::ClosedLoop;
 pub use assembly::{Assembly, Block};
-pub use error::{Limited, SetupError};
+pub use error::SetupError;
 pub use injected::{Energy, Powers};
+pub use limit_error::LimitError;
 pub(crate) use members::tracking_law;
 pub use probe::{probe_balance, singular_start};
 pub use probe_reference::probe_reference;

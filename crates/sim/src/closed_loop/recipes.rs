@@ -5,7 +5,8 @@ use forwardstep_core::sampled::{EncoderFilter, Limits, Recipe, RecipeError, Samp
 
 use super::assemble::ClosedLoop;
 use super::assembly::effort_limits;
-use super::error::{Limited, SetupError};
+use super::error::SetupError;
+use super::limit_error::LimitError;
 use crate::setup::{AgentSetup, Control, Failures, Setup, VelocitySensor};
 
 /// The sampled controller of one agent as plain data: what the simulator steps under [`Setup::control`], for a program of
@@ -65,28 +66,26 @@ pub(super) fn used(mut recipe: Recipe, setup: &Setup, agent: usize, torques: usi
 /// What the actuators can do, and what the robot's axes can bear where that is enforced.
 fn limits(own: &AgentSetup, control: Option<&Control>, torques: usize) -> Result<Option<Limits>, SetupError> {
     let actuators = control.map(|control| &control.actuators);
-    let agent = || own.name.clone();
-    let given = |values: Option<&Vec<f64>>, of: Limited| {
+    let refused = |error| SetupError::Limit { agent: own.name.clone(), error };
+    let given = |values: Option<&Vec<f64>>, what: &'static str, of: fn(LengthError) -> LimitError| {
         let values = values.cloned().unwrap_or_else(|| vec![f64::INFINITY; torques]);
-        LengthError::check(of.words(), torques, values.len()).map_err(|error| SetupError::TorqueLimitCount {
-            agent: agent(),
-            of,
-            error,
-        })?;
+        LengthError::check(what, torques, values.len()).map_err(|error| refused(of(error)))?;
         Ok::<_, SetupError>(values)
     };
-    let mut torque = given(actuators.and_then(|actuators| actuators.torque_limit.as_ref()), Limited::Torque)?;
-    let rate = given(actuators.and_then(|actuators| actuators.torque_rate_limit.as_ref()), Limited::Rate)?;
+    let torque = actuators.and_then(|actuators| actuators.torque_limit.as_ref());
+    let rate = actuators.and_then(|actuators| actuators.torque_rate_limit.as_ref());
+    let mut torque = given(torque, "the limit of torques", LimitError::Torques)?;
+    let rate = given(rate, "the limit of torque rates", LimitError::Rates)?;
     for (limit, effort) in torque.iter_mut().zip(effort_limits(own, torques)?.iter().flatten()) {
         *limit = limit.min(*effort);
     }
     // A rounded torque must not exceed its limit either.
     if let Some(actuators) = actuators {
         for (axis, limit) in torque.iter_mut().enumerate() {
-            let (given, quantum) = (*limit, actuators.torque_quantum);
+            let (given, step) = (*limit, actuators.torque_quantum);
             *limit = actuators.largest_within(given);
             if *limit == 0.0 && given > 0.0 {
-                return Err(SetupError::LimitBelowQuantum { agent: agent(), axis, limit: given, quantum });
+                return Err(refused(LimitError::BelowStep { axis, limit: given, step }));
             }
         }
     }
@@ -100,7 +99,7 @@ pub(super) fn built(recipe: &Recipe, agent: &str) -> Result<Box<dyn Sampled>, Se
         let agent = agent.to_owned();
         match error {
             RecipeError::Length(error) => SetupError::Length { agent, error },
-            RecipeError::Limiter(error) => SetupError::Limiter { agent, error },
+            RecipeError::Limiter(error) => SetupError::Limit { agent, error: LimitError::Limiter(error) },
             RecipeError::Filter(error) => SetupError::VelocityFilter(error),
             error => SetupError::Recipe { agent, error },
         }

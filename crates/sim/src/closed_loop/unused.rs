@@ -3,9 +3,10 @@
 use forwardstep_core::LengthError;
 
 use super::error::SetupError;
+use super::limit_error::LimitError;
 use super::velocity_quantity::VelocityQuantity;
 use crate::reference::{Desired, ReferenceDynamics, ReferenceInterface, Roots};
-use crate::setup::{AgentSetup, Control, Setup, VelocitySensor};
+use crate::setup::{AgentSetup, Axis, Control, Setup, VelocitySensor};
 use crate::system::{ActuatorLimits, Interface};
 
 /// Everything about the whole setup.
@@ -95,18 +96,22 @@ fn roots(reference: &dyn ReferenceDynamics, own: &AgentSetup, interface: &Interf
     Err(SetupError::RootCount { agent: own.name.clone(), error })
 }
 
-/// Limits that are to be enforced have to be there.
+/// Limits that are to be enforced have to be there, and to leave something.
 fn limits(own: &AgentSetup) -> Result<(), SetupError> {
-    let mut axes = own.robot.axes.iter();
-    let missing = match own.robot.interface().actuator_limits {
-        ActuatorLimits::Own => None,
-        ActuatorLimits::None => axes.next(),
-        ActuatorLimits::Axes => axes.find(|axis| axis.effort_limit.is_none()),
+    let name = |axis: &Axis| axis.name.clone();
+    let missing = |axis: &Axis| LimitError::NoEffortLimit { axis: name(axis) };
+    let wrong = |axis: &Axis| match axis.effort_limit {
+        None => Some(missing(axis)),
+        Some(value) if value > 0.0 => None,
+        Some(value) => Some(LimitError::EffortLimit { axis: name(axis), value }),
     };
-    match missing {
-        Some(axis) if own.enforce_limits => {
-            Err(SetupError::NoEffortLimit { agent: own.name.clone(), axis: axis.name.clone() })
-        }
-        _ => Ok(()),
+    let error = match own.robot.interface().actuator_limits {
+        ActuatorLimits::Own => None,
+        ActuatorLimits::None => own.robot.axes.first().map(missing),
+        ActuatorLimits::Axes => own.robot.axes.iter().find_map(wrong),
+    };
+    match error.filter(|_| own.enforce_limits) {
+        Some(error) => Err(SetupError::Limit { agent: own.name.clone(), error }),
+        None => Ok(()),
     }
 }
