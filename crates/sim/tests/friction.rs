@@ -173,6 +173,17 @@ fn a_block_sticks_until_the_push_exceeds_f_and_friction_balances_it() {
 }
 
 #[test]
+fn friction_is_held_for_a_period_and_no_longer() {
+    // It is set to stop the block within the period h under the push at hand, which grows by 2 N/s: v = 2 h²/(2 m) at the end.
+    for period_s in [0.05, 0.02] {
+        let outcome = run(&block(Some(period_s), Function::Formula(Expression::variable(0) * 2.0), 0.0, 1.0)).unwrap();
+        let fastest = column(&outcome, 0, Signal::Velocity, 0).into_iter().fold(0.0, f64::max);
+        let want = period_s * period_s / INERTIA_KG;
+        assert!((fastest / want - 1.0).abs() < 0.01, "{period_s} s: {fastest} m/s, not {want}");
+    }
+}
+
+#[test]
 fn smooth_friction_creeps_where_dry_friction_sticks() {
     // 1 N of 3: F tanh(v/ε) = 1.
     let outcome = run(&block(None, Function::Constant(1.0), 0.0, 4.0)).unwrap();
