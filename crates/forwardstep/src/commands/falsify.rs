@@ -20,7 +20,7 @@ pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Result
     let limit =
         options.seconds.map_or(Duration::MAX, |seconds| Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX));
     let (mut tally, mut saved) = (Tally::default(), 0);
-    for number in options.from..options.from.saturating_add(options.cases) {
+    for number in numbers(options) {
         if started.elapsed() >= limit || stop.asked().is_some() {
             break;
         }
@@ -33,6 +33,12 @@ pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Result
     }
     summary(&tally, options.seed, console);
     Ok(stop.asked().unwrap_or(if tally.failed.is_empty() { Status::Fine } else { Status::Missed }))
+}
+
+/// The numbers of the cases: the last there is counts as any other, and nothing comes behind it.
+fn numbers(options: &FalsifyOptions) -> impl Iterator<Item = u64> {
+    let from = options.from;
+    (0..options.cases).map_while(move |k| from.checked_add(k))
 }
 
 fn save(options: &FalsifyOptions, case: &Case, failure: &Failure, console: &mut Console) -> Result<(), Status> {
@@ -74,6 +80,15 @@ fn summary(tally: &Tally, seed: u64, console: &mut Console) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    /// Started at the last number, it tried nothing and said that all was well.
+    #[test]
+    fn regress_the_last_case_is_tried() {
+        let options = |from, cases| FalsifyOptions { cases, from, seed: 1, seconds: None, out: "refuted".into() };
+        assert!(numbers(&options(u64::MAX, 10)).eq([u64::MAX]));
+        assert!(numbers(&options(u64::MAX - 1, 10)).eq([u64::MAX - 1, u64::MAX]));
+        assert!(numbers(&options(4, 2)).eq([4, 5]));
+    }
 
     /// What a second seed refuted took the place of what the first had.
     #[test]
