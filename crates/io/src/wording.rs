@@ -96,6 +96,14 @@ pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
     nearest.map(|name| format!("did you mean `{}`?", shown(name)))
 }
 
+/// The candidates that have `word` as whole parts of their names, as `theorem-3` is of `theorem-3-24-order-4`.
+fn with_part<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let parts = |name: &str| -> Vec<String> { name.to_lowercase().split(['-', '_', '.']).map(str::to_owned).collect() };
+    let wanted = parts(word);
+    let has = |name: &&str| !word.is_empty() && parts(name).windows(wanted.len()).any(|part| part == wanted);
+    candidates.filter(has).collect()
+}
+
 /// "`а` is U+0430": letters of a word that look like others, or like nothing, and that no candidate has.
 fn strange_letters<'a>(word: &str, candidates: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
     const MOST: usize = 3;
@@ -109,10 +117,12 @@ fn strange_letters<'a>(word: &str, candidates: impl Iterator<Item = &'a str> + C
     (!named.is_empty()).then(|| enumerate(named.into_iter()))
 }
 
-/// "did you mean `x`? `kind` are `a`, `b`, `c`": the near match, if any, and what there is.
+/// "did you mean `x`? `kind` are `a`, `b`, `c`": those of which the word is a part, else the near match, if any; and what there is.
 pub fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String {
     // All that ships fits; of a folder with many files the first are named, and how many there are besides.
     const MOST: usize = 100;
+    // A part that more have tells nothing.
+    const MEANT: usize = 3;
     let names = || candidates.iter().map(AsRef::as_ref);
     let listed: Vec<_> = names().take(MOST).map(|name| format!("`{}`", shown(name))).collect();
     let more = match candidates.len().saturating_sub(MOST) {
@@ -124,7 +134,14 @@ pub fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String 
         Some(letters) => format!("{letters}; {listed}"),
         None => listed,
     };
-    match did_you_mean(nearest(word, names()).as_deref()) {
+    let meant = with_part(word, names());
+    let question = if (1..=MEANT).contains(&meant.len()) {
+        let meant: Vec<_> = meant.into_iter().map(|name| format!("`{}`", shown(name))).collect();
+        Some(format!("did you mean {}?", meant.join(" or ")))
+    } else {
+        did_you_mean(nearest(word, names()).as_deref())
+    };
+    match question {
         Some(question) => format!("{question} {listed}"),
         None => listed,
     }
@@ -158,6 +175,22 @@ mod tests {
         assert_eq!(nearest("gripper", joints), None);
         assert_eq!(nearest("", joints), None);
         assert_eq!(nearest("arm", ["amr", "base"]).as_deref(), Some("amr"));
+    }
+
+    /// `theorem-3` asked for `theorem-1`, one letter away, though there are two of which it is the beginning.
+    #[test]
+    fn regress_what_a_word_is_a_part_of_is_meant_rather_than_what_is_near() {
+        let names = ["theorem-1", "theorem-2", "theorem-3-a5", "theorem-3-24", "five-ships", "my_ships.toml"];
+        let question = |word: &str| choose(word, "there are", &names).split('?').next().map(str::to_owned).unwrap();
+        assert_eq!(question("theorem-3"), "did you mean `theorem-3-a5` or `theorem-3-24`");
+        assert_eq!(question("A5"), "did you mean `theorem-3-a5`");
+        assert_eq!(question("ships"), "did you mean `five-ships` or `my_ships.toml`");
+        // Of what four have in common, and of what none has, the nearest is meant.
+        assert_eq!(question("theorem"), "did you mean `theorem-1`");
+        assert_eq!(question("theorem-4"), "did you mean `theorem-1`");
+        for word in ["", "-", "order"] {
+            assert!(question(word).starts_with("there are"), "{word}");
+        }
     }
 
     #[test]
