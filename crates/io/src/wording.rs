@@ -91,9 +91,10 @@ pub fn for_shell(name: &str) -> String {
     }
 }
 
-/// "did you mean `x`?"
-pub(crate) fn did_you_mean(nearest: Option<&str>) -> Option<String> {
-    nearest.map(|name| format!("did you mean `{}`?", shown(name)))
+/// "did you mean `x` or `y`?", if anything was meant.
+pub(crate) fn did_you_mean<'a>(meant: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let meant: Vec<_> = meant.into_iter().map(|name| format!("`{}`", shown(name))).collect();
+    (!meant.is_empty()).then(|| format!("did you mean {}?", meant.join(" or ")))
 }
 
 /// The candidates that have `word` as whole parts of their names, as `theorem-3` is of `theorem-3-24-order-4`.
@@ -135,11 +136,9 @@ pub fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String 
         None => listed,
     };
     let meant = with_part(word, names());
-    let question = if (1..=MEANT).contains(&meant.len()) {
-        let meant: Vec<_> = meant.into_iter().map(|name| format!("`{}`", shown(name))).collect();
-        Some(format!("did you mean {}?", meant.join(" or ")))
-    } else {
-        did_you_mean(nearest(word, names()).as_deref())
+    let question = match meant.len() {
+        1..=MEANT => did_you_mean(meant),
+        _ => did_you_mean(nearest(word, names()).as_deref()),
     };
     match question {
         Some(question) => format!("{question} {listed}"),
@@ -180,17 +179,20 @@ mod tests {
     /// `theorem-3` asked for `theorem-1`, one letter away, though there are two of which it is the beginning.
     #[test]
     fn regress_what_a_word_is_a_part_of_is_meant_rather_than_what_is_near() {
-        let names = ["theorem-1", "theorem-2", "theorem-3-a5", "theorem-3-24", "five-ships", "my_ships.toml"];
+        let names =
+            ["theorem-1", "theorem-2", "theorem-3-a5", "theorem-3-24", "five-ships", "my_ships.toml", "ships.csv"];
         let question = |word: &str| choose(word, "there are", &names).split('?').next().map(str::to_owned).unwrap();
         assert_eq!(question("theorem-3"), "did you mean `theorem-3-a5` or `theorem-3-24`");
         assert_eq!(question("A5"), "did you mean `theorem-3-a5`");
-        assert_eq!(question("ships"), "did you mean `five-ships` or `my_ships.toml`");
+        assert_eq!(question("ships"), "did you mean `five-ships` or `my_ships.toml` or `ships.csv`");
         // Of what four have in common, and of what none has, the nearest is meant.
         assert_eq!(question("theorem"), "did you mean `theorem-1`");
         assert_eq!(question("theorem-4"), "did you mean `theorem-1`");
         for word in ["", "-", "order"] {
             assert!(question(word).starts_with("there are"), "{word}");
         }
+        // Nothing is part of anything, even where a part is nothing.
+        assert!(choose("", "there are", &[".hidden.toml"]).starts_with("there are"));
     }
 
     #[test]

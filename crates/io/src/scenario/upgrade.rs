@@ -54,10 +54,10 @@ pub struct Moved {
 /// use forwardstep_io::SourceText;
 /// use forwardstep_io::scenario::upgrade;
 ///
-/// let old = SourceText::new("old.toml", "format = 1\n[solver]\nledger = false # faster\n");
+/// let old = SourceText::new("old.toml", "format = 1\n[reference.leader]\nsign_every_s = 0.1 # slow\n");
 /// let new = upgrade(&old)?;
-/// assert_eq!(new.text, "format = 2\n[solver]\nlyapunov_balance = false # faster\n");
-/// assert_eq!((new.moved[1].line, new.moved[1].from.as_str()), (3, "ledger = false # faster"));
+/// assert_eq!(new.text, "format = 2\n[reference.leader]\nsign_period_s = 0.1 # slow\n");
+/// assert_eq!((new.moved[1].line, new.moved[1].from.as_str()), (3, "sign_every_s = 0.1 # slow"));
 /// # Ok::<(), forwardstep_io::scenario::ScenarioError>(())
 /// ```
 ///
