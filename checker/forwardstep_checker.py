@@ -134,7 +134,7 @@ def settled(node, shown, refuted, words):
 # A number of a scenario.
 def exact(value, where):
     such(isinstance(value, (int, Fraction)) and not isinstance(value, bool), f"{where} must be a number")
-    return such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long", Fraction(value))
+    return such(isinstance(value, Fraction) or value.bit_length() <= 4 * MOST_DIGITS, f"{where} is too long", decimal(repr(float(value))))
 
 def positive(value, where): return such((x := exact(value, where)) > 0, f"{where} must be positive", x)
 
@@ -495,19 +495,19 @@ def weighed(tree, out=True, whole=False):
     decided(len(a) * len(b) <= 1000, "a formula has too many terms")
     return [(COMBINED[kind](x, y) if kind == "*" or q == ONE else x, unique(times(p, q))) for (x, p), (y, q) in itertools.product(a, b)]
 
-# Sines and cosines of one angle together: a sin φ + b cos φ keeps within ± √(a² + b²). The rest may tell more where its factors stay
-# together.
+# Sines and cosines of one angle together, whatever they are multiplied with: a sin φ + b cos φ keeps within ± √(a² + b²). The rest may
+# tell more where its factors stay together.
 def swinging(tree, t, out=True):
-    found, rest = {}, (Fraction(0),) * 2
-    decided(len(weighed(tree, out, out)) > 1, "is no sum")
-    for by, part in weighed(tree, out, out):
-        if part[:2] in (("f", "sin"), ("f", "cos")):
-            ratio = quotient(part[2])
-            pair_ = found.setdefault(repr([trimmed(of) for of in ratio] if ratio else part[2]), [(Fraction(0),) * 2] * 2)
-            pair_[part[1] == "cos"] = add(pair_[part[1] == "cos"], by)
-        else: rest = add(rest, multiply(by, enclose(part, t)))
-    most = sum(function("sqrt", square(pair_))[1] for pair_ in found.values())
-    return add(rest, (-most, most))
+    found, terms = {}, weighed(tree, out, out)
+    for by, part in decided(len(terms) > 1, "is no sum", terms):
+        parts = factors_of(part)
+        wave = next((x for x in parts if x[:2] in (("f", "sin"), ("f", "cos"))), None)
+        if wave: parts.remove(wave)
+        pair_ = found.setdefault(wave and repr(list(map(trimmed, quotient(wave[2]) or ())) or wave[2]), [(Fraction(0),) * 2] * 2)
+        side = bool(wave and wave[1] == "cos")
+        pair_[side] = add(pair_[side], multiply(by, enclose(functools.reduce(times, parts, ONE) if wave else part, t)))
+    rest, most = found.pop(None, [(Fraction(0),) * 2])[0], sum(function("sqrt", square(pair_))[1] for pair_ in found.values())
+    return decided(not infinite(most), "swings without bound", add(rest, (-most, most)))
 
 # What a formula keeps within while t keeps within the interval `t`, or states within those of a table; at `END` what holds all its
 # limit points as t → ∞. Intervals alone make ∞/∞ of t/(1 + t) for large t, 0 · ∞ of t exp(−t), and 2 of sin t − cos t.
@@ -542,8 +542,8 @@ def constant(tree):
 def constant_for_ever(tree):
     low, high = (attempt(enclose, tree, FOR_EVER) or WHOLE) if has_variable(tree) else enclose(tree, WHOLE)
     decided(has_variable(tree) or float(low) == float(high), "a constant has too many digits")
-    # What runs is the double next to a number that is not rational.
-    return low if low == high else None if has_variable(tree) else decimal(repr(float(low)))
+    # What runs is the double next to it.
+    return None if low != high and has_variable(tree) else decimal(repr(float(low)))
 
 def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
@@ -639,11 +639,11 @@ LAGRANGIAN, ARMS, MASS = ("planar_arm", "point_mass", "ship", "urdf"), ("planar_
 # Each law, the robots that it is made for, and the keys of its gains. What is not written is positive by default.
 LAWS = {
     "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
+    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
     "position_only": (MASS, "damping filter_per_s adaptation_gain"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
     "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
     "task_space": (ARMS, "damping adaptation_gain task_gain kinematic_gain torque_share reference_gain_per_s attitude_gain"),
     "attitude": (("spacecraft",), "error_gain_per_s2 rate_gain_per_s filter_gain_per_s damping"),
-    "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
     "model_reference": (MASS, "filter_per_s adaptation_gain"),
     "adaptive_backstepping": (("strict_feedback", "pure_feedback"), "gains_per_s adaptation_gain"),
     "passivity_filter": (("spacecraft",), "error_gain_n_m filter_gain_per_s damping")}
@@ -690,8 +690,7 @@ def possible(robot, body, start):
         # Wheels turn what has some about every axis if their own axes span all directions.
         wheels = [[exact(x, "axis") for x in wheel.get("axis", [])] for wheel in body.get("wheels", [])] or matrix(1, 3, "axis")
         turns = {len(u) for u in wheels} == {3} and is_definite([[sum(u[i] * u[k] for u in wheels) for k in range(3)] for i in range(3)])
-        momenta = start.get("spacecraft", {}).get("wheel_momentum_n_m_s", wheels)
-        spun = turns and all(map(any, wheels)) and len(momenta) == len(wheels)
+        spun = turns and all(map(any, wheels)) and len(start.get("spacecraft", {}).get("wheel_momentum_n_m_s", wheels)) == len(wheels)
         return spun and is_definite(matrix(body.get("inertia_kg_m2"), 3, "inertia_kg_m2"))
     return of["dimension"] in range(1, 101) and of["order"] in range(1, 256)
 
@@ -1036,7 +1035,7 @@ class Scenario:
 def read(path):
     try:
         such(path.stat().st_size <= MOST_BYTES, f"{path} is too large")
-        return (data := path.read_bytes()), data.decode("utf-8")
+        return (data := path.read_bytes()), data.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error: raise Meaningless(f"{path} cannot be read: {error}") from None
 
 # --- Which theorem speaks, and what it asks for
@@ -1258,8 +1257,8 @@ MOVING = ("revolute", "continuous", "prismatic")
 # For what reads the URDF of an agent, as (agent, XML, what is locked).
 def of_urdf(reader):
     def guarded(scenario, agent):
-        try:
-            return reader(agent, ElementTree.fromstring(scenario.text_of(agent.body["file"])), table(agent.body.get("locked", {}), "lock"))
+        text = re.sub(r"\sxmlns=(\"[^\"]*\"|'[^']*')", "", scenario.text_of(agent.body["file"]))
+        try: return reader(agent, ElementTree.fromstring(text), table(agent.body.get("locked", {}), "lock"))
         except (ElementTree.ParseError, AttributeError, TypeError, LookupError, RecursionError, ValueError):
             raise Undecided("a URDF cannot be read here") from None
     return guarded
@@ -1346,12 +1345,16 @@ def translations(scenario, agent):
         at = placed(at, joint, joint.locked)
     return at, found
 
-# Where the first joint that moves is, and the square of all lengths from it to the tip, which no posture exceeds.
+# Where the first joint that moves is, and the squares of the least and the largest distance from it to the tip, which no posture leaves:
+# what the longest length exceeds all others by, and all together.
 def outstretched(scenario, agent):
     decided(all(joint.kind != "prismatic" for joint in path(scenario, agent)), "a joint that slides carries the tip")
-    at, found = translations(scenario, agent)
-    length = functools.reduce(add, (function("sqrt", square(found[k:k + 3])) for k in range(0, len(found), 3)))
-    return [at["xyz".index(axis)] for axis in agent.gains["end_effector"].get("coordinates", "xyz")], multiply(length, length)
+    (at, found), axes = translations(scenario, agent), agent.gains["end_effector"].get("coordinates", "xyz")
+    parts = [function("sqrt", square(found[k:k + 3])) for k in range(0, len(found), 3)]
+    most = functools.reduce(add, parts)
+    # The distance along two axes may be smaller.
+    least = tuple(max(2 * part[k] - most[1 - k] for part in parts) if len(axes) == 3 else Fraction(-1) for k in (0, 1))
+    return [at["xyz".index(axis)] for axis in axes], tuple(x * abs(x) for x in least), multiply(most, most)
 
 # q at the start, where the text has it as numbers: one list for each of those that share a table, or one for all.
 def posture(scenario, agent):
@@ -1373,7 +1376,8 @@ def rotation(scenario, agent): return functools.reduce(lambda at, stood: [carrie
 
 # The lengths that may be uncertain: of a planar arm, of a tool, or of all that moves.
 def lengths(scenario, agent):
-    if agent.robot == "planar_arm": return [(x, x) for x in planar(agent.body)[1]]
+    share = exact(agent.entry.get("parameter_variation", {}).get("relative", 0), "relative")
+    if agent.robot == "planar_arm": return [(x * (1 - share), x * (1 + share)) for x in planar(agent.body)[1]]
     return translations(scenario, agent)[1][0 if agent.gains["end_effector"].get("uncertain", "tool") == "chain" else -3:]
 
 # The same as a law starts from them.
@@ -1448,7 +1452,6 @@ def parameters_hold(scenario): return all(bounds_hold(agent) for agent in scenar
 
 # Lengths that are uncertain within the bounds that their estimates keep.
 def lengths_hold(scenario, agent):
-    decided("parameter_variation" not in agent.entry, "these lengths are not read here")
     bounds, true = table(agent.gains["bounds"], "bounds", "lower_m upper_m"), lengths(scenario, agent)
     lower, upper = ([exact(x, "bounds") for x in listed(bounds[key], key)] for key in ("lower_m", "upper_m"))
     return len(lower) == len(true) == len(upper) and all(low <= x[0] and x[1] <= high for low, x, high in zip(lower, true, upper))
@@ -1462,15 +1465,6 @@ def certain(scenario, agent):
 def derivatives(a): return max(1, len(a.body.get("regressors", "")) - (a.robot == "strict_feedback")) if "_feedback" in a.robot else 1
 
 def terms(body): return [formula(text, STATES) for _, text in leaves(body) if isinstance(text, str)]
-
-# A value of the sign is solved for so often that the error that stays, about h sup|ξ̇₀|/α, is small: h κ₀, or h √(κ₀κ₁), ≤ 0.01.
-# For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α.
-def set_valued(scenario):
-    h = positive(scenario.body.get("sign_period_s", Fraction(1, 1000)), "sign_period_s")
-    h = h if scenario.control is None else 1 / positive(scenario.control.get("sample_hz"), "sample_hz")
-    (alpha, _), (a, b) = coefficients(scenario), roots_of(scenario.body)[0]
-    mean = alpha * (a if scenario.body.get("design") in FIRST_ORDER else 1 + abs(b) / a)
-    return scenario.body.get("sign", "implicit") == "implicit" and 10_000 * h * h * mean <= 1 and h < scenario.end_s
 
 # α and β of the reference dynamics of a leader: p + α, or p² + β p + α.
 def coefficients(scenario):
@@ -1528,7 +1522,7 @@ TEXT = {(each, "text"): so for each, so in {
     "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
     "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: parameters_hold(s),
     "target-at-rest": lambda _, own: all(map(rests, own)), "lengths-within-bounds": lambda s, own: all(lengths_hold(s, a) for a in own),
-    "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired, "set-valued-sign": lambda s, _: set_valued(s),
+    "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired,
     "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs))}.items()} | {
     ("lengths-within-bounds", "outside"): lambda s, own: not all(lengths_hold(s, agent) for agent in own),
     ("parameters-within-bounds", "outside"): lambda s, _: not parameters_hold(s), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
@@ -1546,10 +1540,10 @@ def by_text(claim): require(claim.proof, TEXT[claim.id, claim.kind](claim.scenar
 RULES |= dict.fromkeys(TEXT, by_text)
 
 # The pieces of time that `range` and `cells` name: [0, ∞), or as many of a period of the formula, of the run, or until a time
-# from which on one more takes all that is left.
-def pieces(node, tree, end_s):
+# from which on one more takes all that is left. Up to a time alone counts what nobody follows any more.
+def pieces(node, tree, end_s=None):
     kind = node.field("range").text()
-    require(node.field("range"), kind in ("for-ever", "period", "tail", "run"), "must be `for-ever`, `period`, `tail` or `run`")
+    require(node.field("range"), kind in ("for-ever", "period", "tail") or kind == "run" and end_s, "is of no known kind")
     if kind == "for-ever": return [FOR_EVER]
     length = node.field("until_s").number() if kind == "tail" else end_s
     (unit, length), cells = period(tree) if kind == "period" else ((Fraction(1),) * 2, length), node.field("cells").count()
@@ -1565,7 +1559,7 @@ def enclosed(claim, node, tree, limits, words, end_s=False):
     require(within, len(ends) == 2, "must have two ends")
     require(within, limits(*ends), words)
     fits = lambda found: ends[0] <= found[0] and found[1] <= ends[1]
-    for piece in pieces(node, tree, end_s or claim.scenario.end_s):
+    for piece in pieces(node, tree, end_s):
         found = enclose(tree, piece)
         if fits(found) or fits(found := common(found, attempt(straight, tree, piece) or WHOLE)): continue
         for t in (piece[0] + (2**k - 1 if infinite(piece[1]) else (piece[1] - piece[0]) * k / 8) for k in range(9)):
@@ -1574,12 +1568,11 @@ def enclosed(claim, node, tree, limits, words, end_s=False):
         if not limits(*found): doubt = f"[{said(found[0])}, {said(found[1])}], found from t = {said(piece[0])} s on, decides nothing"
     return decided(not doubt, doubt, piece)
 
-# The same from the middle on, by the slope: the error is one of the square of the length of a piece.
+# The same by the slope: between the ends, where it has one sign; else from the middle on, with an error of the square of the length.
 def straight(tree, piece):
-    middle, half = decided(not infinite(piece[1]), "has no middle") or ((piece[0] + piece[1]) / 2, (piece[1] - piece[0]) / 2)
-    return add(enclose(tree, (middle,) * 2), multiply(enclose(derivative(tree), piece), (-half, half)))
-
-def lasts(node): return node.field("range").text() != "run"
+    (a, b), slope = decided(not infinite(piece[1]), "has no middle", piece), enclose(derivative(tree), piece)
+    if slope[0] >= 0 or slope[1] <= 0: return hull(enclose(tree, (a, a)), enclose(tree, (b, b)))
+    return add(enclose(tree, ((a + b) / 2,) * 2), multiply(slope, ((a - b) / 2, (b - a) / 2)))
 
 # Encloses the formulas of all edges within limits, each named by an edge; whether for ever, and all are uniformly continuous. What
 # no edge follows any more from the last switch on counts until then, instead of the run, where it is continuous.
@@ -1591,9 +1584,8 @@ def formulas(claim, node, limits, words):
         if (text := followed(claim, scenario.edge_at(entry.field("edge")))) is None: continue
         last = enclosed(claim, entry, tree := formula(text), limits, f"lets `{text}` {words}", text not in stay and sum(scenario.dwell))
         # A formula that repeats, and has a value everywhere, is uniformly continuous.
-        found[text] = text not in stay or lasts(entry) and (
-            entry.field("range").text() == "period" or steady(resolved(tree, END), last))
-        decided(found[text] or claim.answer != HOLDS or not lasts(entry), f"whether `{text}` is uniformly continuous is not decided here")
+        found[text] = text not in stay or entry.field("range").text() == "period" or steady(resolved(tree, END), last)
+        decided(found[text] or claim.answer != HOLDS, f"whether `{text}` is uniformly continuous is not decided here")
     for text in {followed(claim, edge) for edge in scenario.used()}: require(node, text in found, f"lacks `{text}`")
     return all(found.values())
 
@@ -1762,11 +1754,11 @@ def pivots(rows):
 # A symmetric matrix is positive definite if and only if all pivots are positive.
 def is_definite(rows): return rows == [list(column) for column in zip(*rows)] and len(pivots(rows)) == len(rows) and min(pivots(rows)) > 0
 
+# What is stated are the pivots, or less: those of a matrix that is larger by what is positive semidefinite are larger.
 def definite(node, rows, stated):
-    such(len(rows) <= MOST_ROWS and all(len(row) == len(rows) for row in rows), "a gain is not a square matrix of moderate size")
+    such(0 < len(rows) <= MOST_ROWS and all(len(row) == len(rows) for row in rows), "a gain is not a square matrix of moderate size")
     require(node, rows == [list(column) for column in zip(*rows)], "is not of a symmetric matrix")
-    require(stated, [pivot.number() for pivot in stated.each()] == pivots(rows), "are not the pivots of the matrix")
-    require(stated, is_definite(rows), "are not all positive")
+    require(stated, [0 < x.number() <= y for x, y in zip(stated.each(), pivots(rows))] == [True] * len(rows), "are not positive pivots")
 
 ASKED_OF = {"positive-gains": ("adaptive", "known"), "chain-gains": CHAIN_LAWS, "chain-adaptation": CHAIN_LAWS} | {
     f"{law.replace('_', '-')}-gains": (law,) for law in (*BLIND, *ROOTLESS, "thrust")}
@@ -1814,22 +1806,22 @@ def motions_of(claim, t=FOR_EVER):
 @rule("bounded-target bounded-leader", "derivatives")
 def bounded(claim, order, stretch):
     stretch.only("range", "cells", "until_s")
-    always, motions = True, motions_of(claim)
+    motions = motions_of(claim)
     require(order, order.count() >= max(most for _, _, most in motions), "is too low for a law")
     decided(all(most <= 3 or tree[0] != "points" for paths, _, most in motions for tree in paths), "a curve's third derivative jumps")
     # Agents of one entry share a target.
     for tree, lowest, most in {(unique(tree), lowest, most) for paths, lowest, most in motions for tree in paths if tree[0] != "points"}:
         for k in range(most + 1):
             if k >= lowest and not finite(tree, [FOR_EVER]):
-                always, shown = lasts(stretch), finite(tree, pieces(stretch, tree, claim.scenario.end_s))
-                settled(stretch, shown, always and attempt(grows, tree), f"does not bound derivative {k}")
+                settled(stretch, finite(tree, pieces(stretch, tree)), attempt(grows, tree), f"does not bound derivative {k}")
             tree = derivative(tree)
-    return always
 
 # A sine or cosine of what goes beyond every bound comes to 1 again and again.
 def repeats(tree): return turns_for_ever(tree) or attempt(period, tree) is not None
 
-def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and infinite((attempt(limit, tree[2]) or (0, 0))[0])
+def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and endless(tree[2])
+
+def endless(tree): return attempt(limit, tree) in ((INF, INF), (-INF, -INF))
 
 # Whether a formula exceeds every bound. Of each term P is what does not repeat, and S is what does: the P of one term exceeds every bound,
 # its S is not always zero, and beside it all others vanish.
@@ -1838,7 +1830,6 @@ def grows(tree):
     split = lambda part, of: functools.reduce(times, (x for x in factors_of(part) if repeats(x) == of), ONE)
     found = [(by, split(part, False), split(part, True)) for by, part in weighed(tree) if by != (0, 0)]
     beside = lambda p, others: all(attempt(limit, ("/", q, p)) == (0, 0) and finite(s, [FOR_EVER]) for _, q, s in others)
-    endless = lambda p: infinite((attempt(limit, p) or (0, 0))[0])
     ahead = lambda k, by, p, s: (by[0] > 0 or by[1] < 0) and endless(p) and swings(s) and beside(p, found[:k] + found[k + 1:])
     return endless(tree) or any(ahead(k, *term) for k, term in enumerate(found))
 
@@ -1874,22 +1865,34 @@ def drive(claim, at=FOR_EVER):
     sums = [functools.reduce(plus, (times(("number", Fraction(by)), tree) for by, tree in zip(factors, each) if by)) for each in rates]
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
+# A value of the sign is solved for so often that the error that stays is small, about h sup|ξ̇₀|/α: h κ₀, or h √(κ₀κ₁), ≤ 0.01, and beside
+# what the leader moves. For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α.
+@rule("set-valued-sign", "text")
+def set_valued(claim):
+    s, body, control = claim.scenario, claim.scenario.body, claim.scenario.control
+    h = 1 / positive(control.get("sample_hz"), "sample_hz") if control else positive(body.get("sign_period_s", Fraction(1, 1000)), "period")
+    (alpha, _), (a, b) = coefficients(s), roots_of(body)[0]
+    swing, mean = (1, a) if body.get("design") in FIRST_ORDER else (1 + abs(b) / a,) * 2
+    within, often = (lambda tree: attempt(enclose, tree, FOR_EVER) or WHOLE), 10_000 * h * h * alpha * mean <= 1 and h < s.end_s
+    require(claim.proof, body.get("sign", "implicit") == "implicit" and often, "is not so by the text")
+    driven = max((min(size(within(tree)), gamma[0]) for tree, _, gamma in drive(claim)), default=0) if s.motion else 0
+    moved_ = max((high - low for low, high in map(within, s.motion or [])), default=0)
+    decided(100 * h * swing * driven <= alpha * moved_, "an error may stay that is not small beside what the leader moves")
+
 def squares(trees): return functools.reduce(plus, [("^", tree, Fraction(2)) for tree in trees])
 
 def quaternion(own):
-    paths = [tree for agent in own for tree in agent.target or []]
-    return decided(len(paths) in (4, 7), "is of no quaternion", paths[-4:])
+    return decided(len(paths := [tree for agent in own for tree in agent.target or []]) in (4, 7), "is of no quaternion", paths[-4:])
 
 # The square of how far a target is from where the reach of a tip is counted.
 def reached(claim, _=FOR_EVER):
     agent, = claim.own
     if agent.robot == "planar_arm":
-        first, second = planar(agent.body)[1]
-        return [(squares(agent.target), ((first - second) ** 2,) * 2, ((first + second) ** 2,) * 2)]
-    base, most = outstretched(claim.scenario, agent)
+        first, second = lengths(claim.scenario, agent)
+        return [(squares(agent.target), square([add(first, minus(second))]), square([add(first, second)]))]
+    base, least, most = outstretched(claim.scenario, agent)
     away = [plus(tree, ("f", "neg", ("hull", *(("number", end) for end in at)))) for tree, at in zip(agent.target, base)]
-    # Not all that is nearer can be reached.
-    return [(squares(away), (Fraction(-1),) * 2, most)]
+    return [(squares(away), least, most)]
 
 # The law takes a smallest singular value of 10^-6 of the largest for zero, and the largest is at most the root of the sum of all squares.
 @rule("regular-jacobian", "left-null")
@@ -1908,8 +1911,8 @@ def kept(claim, bounds=None, bound=None):
     limits, entries = LIMITS[claim.id](claim), bounds.each() if bounds else [bound] if bound else []
     require(claim.proof, len(entries) == len(limits), "must have one bound for each axis")
     for entry, (tree, least, most) in zip(entries, limits):
-        enclosed(claim, entry, tree, lambda low, high: least[1] < low and high < most[0], f"leaves ({said(least[1])}, {said(most[0])})")
-    return all(lasts(entry) for entry in entries)
+        inside = lambda low, high: least[1] < low and high < most[0] or decided(low <= least[0] or most[1] <= high, "lengths vary", False)
+        enclosed(claim, entry, tree, inside, f"leaves ({said(least[1])}, {said(most[0])})")
 
 @rule("sign-gain target-within-reach", "instant out-of-reach")
 def left(claim, t_s, axis=None):
@@ -1959,7 +1962,6 @@ def changes_sign(claim, entry, from_s, to_s):
 def entry_away(claim, entry, bound):
     require(entry, 1 <= entry.count() <= 4, "is no entry")
     enclosed(claim, bound, quaternion(claim.own)[entry.count() - 1], lambda low, high: low > 0 or high < 0, "holds zero")
-    return lasts(bound)
 
 # k λ > β + κ⁴/(2 (β² − α) (β − κ)), which grows with κ, the smaller root: L − (`least`/k) 1 of the followers is positive definite.
 @rule("swarm-coupling", "definite")
@@ -2066,7 +2068,7 @@ def outcome(scenario, entry, asked, spoken):
     claim = Claim(scenario, entry)
     for key in [(claim.id, name) for name in claim.agents or [""]]:
         # These may be spoken about robot by robot.
-        require(entry, claim.id in ("uniform-inertia", "hurwitz", "desired-dynamics") or key not in spoken, "speaks twice about the same")
+        require(entry, claim.id in "uniform-inertia hurwitz desired-dynamics nonzero-thrust".split() or key not in spoken, "speaks twice")
         # What is known of the reach of a URDF depends on where its tip is; and a formula may be seen to be a constant here alone.
         require(entry, key in asked or claim.id in ("target-within-reach", "bounded-weights"), "is not asked for by this scenario")
         spoken.add(key)

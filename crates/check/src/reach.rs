@@ -32,7 +32,7 @@ pub(crate) fn within_reach(agent: &AgentSetup, law: &TaskSpaceLaw, end_s: f64) -
     if reach.holds(by_box) {
         return Some(reach.within(by_box));
     }
-    let until_s = target.paths().iter().filter_map(last_s).fold(end_s, f64::max);
+    let until_s = target.paths().iter().filter_map(Path::rests_s).fold(end_s, f64::max);
     let seen = looks(target, &reach, until_s);
     if let Some(out) = seen.out {
         return Some(reach.out_of(out));
@@ -55,28 +55,18 @@ pub(crate) fn within_reach(agent: &AgentSetup, law: &TaskSpaceLaw, end_s: f64) -
 
 /// When a target is first seen out of reach, also after the end of the run, s.
 pub(crate) fn leaves_s(target: &Trajectory, reach: &Reach, end_s: f64) -> Option<f64> {
-    let until_s = target.paths().iter().filter_map(last_s).fold(end_s, f64::max);
+    let until_s = target.paths().iter().filter_map(Path::rests_s).fold(end_s, f64::max);
     looks(target, reach, until_s).out.or_else(|| out_later(target, reach, until_s)).map(|out| out.t_s)
-}
-
-/// Where a curve through points ends, and stays.
-fn last_s(path: &Path) -> Option<f64> {
-    match path {
-        Path::Spline(spline) => Some(spline.ends_s()[1]),
-        Path::Formula(_) | Path::Sinusoids { .. } => None,
-    }
 }
 
 /// Curves through points, and what does not move, are at rest from the last look on: for them it speaks of all time. Between two looks a
 /// target gets no farther than its speed takes it.
 fn by_speed(target: &Trajectory, reach: &Reach, seen: &Seen, until_s: f64) -> Option<MotionExtent> {
-    let speed = |axis: usize, end_s| target.hull(axis, 1, end_s).size();
     let axes = 0..reach.from.len();
-    let stays = |axis: usize| last_s(&target.paths()[axis]).is_some() || speed(axis, None) == 0.0;
-    if !axes.clone().all(stays) {
+    if axes.clone().any(|axis| target.paths()[axis].rests_s().is_none()) {
         return None;
     }
-    let squares = axes.map(|axis| speed(axis, Some(until_s))).map(|speed| speed * speed);
+    let squares = axes.map(|axis| target.hull(axis, 1, Some(until_s)).size()).map(|speed| speed * speed);
     let room = 0.5 * until_s / f64::from(LOOKS) * squares.sum::<f64>().sqrt() + ROUNDING * reach.most;
     let room = if room.is_finite() { room } else { f64::INFINITY };
     Some(MotionExtent { least: seen.nearest - room, most: seen.farthest + room })

@@ -11,7 +11,7 @@ use forwardstep_sim::graph::{Edge, Weight};
 use num_rational::BigRational;
 use num_traits::Zero;
 
-use super::enclosure::{Reach, steady};
+use super::enclosure::steady;
 use super::exact::above;
 use super::limit::{Limit, limit, refutes};
 use super::producers::Claim;
@@ -28,12 +28,6 @@ fn edges(setup: &Setup) -> impl Iterator<Item = (usize, &Edge)> {
     graphs.flat_map(|(phase, graph)| graph.iter().map(move |edge| (phase, edge)))
 }
 
-/// Until when, and how far, what such edges follow has to be enclosed: until they are gone for good, or as the claim asks.
-fn stretch(setup: &Setup, claim: &Claim<'_>, follows: impl Fn(&Edge) -> bool) -> (f64, Reach) {
-    let gone_s = setup.network.schedule.gone_s(follows);
-    gone_s.map_or((setup.time.end_s, claim.reach()), |gone_s| (gone_s, Reach::Run))
-}
-
 pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     if claim.answer == Answer::Violated {
         return late_for_ever(setup);
@@ -47,8 +41,8 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         }
         if let Some(formula) = delay.downcast::<BoundedFormula>() {
             if seen.insert(edge.delay) {
-                let (end_s, reach) = stretch(setup, claim, |other| other.delay == edge.delay);
-                let mut found = steady(formula.formula(), end_s, reach, |within| within.low >= 0.0)?;
+                let gone_s = setup.network.schedule.gone_s(|other| other.delay == edge.delay);
+                let mut found = steady(formula.formula(), gone_s, |within| within.low >= 0.0)?;
                 found.edge = Some((edge.from, edge.to, phase));
                 bound_s = bound_s.max(found.within[1].clone());
                 formulas.push(found);
@@ -171,8 +165,8 @@ pub(super) fn weights(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     });
     let enclosure = |(index, edge): (usize, (usize, usize, usize))| {
         let formula = setup.network.weights.get(index)?.formula();
-        let (end_s, reach) = stretch(setup, claim, |other| other.weight == Weight::Formula(index));
-        let found = steady(formula, end_s, reach, |within| within.low > 0.0)?;
+        let gone_s = setup.network.schedule.gone_s(|other| other.weight == Weight::Formula(index));
+        let found = steady(formula, gone_s, |within| within.low > 0.0)?;
         Some(Enclosure { edge: Some(edge), ..found })
     };
     found.map(enclosure).collect::<Option<_>>().map(Proof::Weights)

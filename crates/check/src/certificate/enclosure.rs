@@ -14,29 +14,15 @@ const STARTS_S: [u32; 5] = [1, 16, 64, 256, 1024];
 /// Room, as a part, for the ends of pieces, which are rounded here and exact elsewhere.
 const ROOM: f64 = 1e-9;
 
-/// How far a proof has to reach.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reach {
-    /// For all time.
-    ForEver,
-    /// Up to the end of the run, or further.
-    Run,
-}
-
-/// The first stretch on which `formula` keeps within something that is `good`: for ever, over a period, in pieces of which the last
-/// has no end, up to `end_s`.
-pub(super) fn enclosed(
-    formula: &Expression,
-    end_s: f64,
-    reach: Reach,
-    good: impl Fn(Interval) -> bool,
-) -> Option<Enclosure> {
+/// The first stretch on which `formula` keeps within something that is `good`: for ever, over a period, or in pieces of which the last
+/// has no end.
+pub(super) fn enclosed(formula: &Expression, good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
     let slope = slope(formula);
     let enclose = |t: Interval| match t.high.is_finite() {
         true => on_piece(formula, slope.as_ref(), t),
         false => late_or_whole(formula, t),
     };
-    found(&Stretches::of(formula), enclose, end_s, reach, good)
+    found(&Stretches::of(formula), enclose, good)
 }
 
 /// What a formula keeps within on a stretch of time, which may have no end.
@@ -51,35 +37,32 @@ pub(super) fn late_or_whole(formula: &Expression, t_s: Interval) -> Interval {
     formula.enclose(Interval { low: 0.0, high: 1.0 }).hull(late(formula, 1.0).within)
 }
 
-/// What is tried besides [0, ∞) at once and the run.
+/// What is tried besides [0, ∞) at once.
 pub(super) struct Stretches {
     period_s: Option<f64>,
     /// Times from which one piece takes all that is left.
     starts_s: Vec<u32>,
+    /// From when on nobody follows it any more.
+    gone_s: Option<f64>,
 }
 
 impl Stretches {
     /// Those of a formula, which may repeat.
     pub(super) fn of(formula: &Expression) -> Self {
-        Stretches { period_s: formula.period(), starts_s: STARTS_S.to_vec() }
+        Stretches { period_s: formula.period(), starts_s: STARTS_S.to_vec(), gone_s: None }
     }
 
     /// Those of what stays where it is from a time on.
     pub(super) fn until(last_s: f64) -> Self {
         let whole = last_s.ceil().max(1.0);
         let start_s = (whole <= f64::from(u32::MAX)).then_some(whole as u32);
-        Stretches { period_s: None, starts_s: start_s.into_iter().collect() }
+        Stretches { period_s: None, starts_s: start_s.into_iter().collect(), gone_s: None }
     }
 }
 
 /// The same of a formula where the ends matter: one pass in rational numbers ends at zero where rounded ends fall short of it, as
-/// 0.2 + 0.2 sin 3 t.
-pub(super) fn steady(
-    formula: &Expression,
-    end_s: f64,
-    reach: Reach,
-    good: impl Fn(Interval) -> bool,
-) -> Option<Enclosure> {
+/// 0.2 + 0.2 sin 3 t. What nobody follows any more from `gone_s` on counts until then.
+pub(super) fn steady(formula: &Expression, gone_s: Option<f64>, good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
     let slope = slope(formula);
     let enclose = |t: Interval| {
         if t.high.is_finite() {
@@ -90,15 +73,13 @@ pub(super) fn steady(
         let touches = near_zero && formula.bounds(t.low, t.high).low >= 0.0;
         Interval { low: if touches { 0.0 } else { within.low }, ..within }
     };
-    found(&Stretches::of(formula), enclose, end_s, reach, good)
+    found(&Stretches { gone_s, ..Stretches::of(formula) }, enclose, good)
 }
 
 /// The same for what is made of a formula and has its period, as its derivatives have.
 pub(super) fn found(
     stretches: &Stretches,
     enclose: impl Fn(Interval) -> Interval,
-    end_s: f64,
-    reach: Reach,
     good: impl Fn(Interval) -> bool,
 ) -> Option<Enclosure> {
     let good = |within: &Interval| within.is_finite() && good(*within);
@@ -126,7 +107,7 @@ pub(super) fn found(
             cut(start_s, Some(rest), &|cells| Range::Tail { cells, until_s })
         })
     };
-    let run = || (reach == Reach::Run).then(|| cut(end_s, None, &|cells| Range::Run { cells }))?;
+    let run = || cut(stretches.gone_s?, None, &|cells| Range::Run { cells });
     period().or_else(tail).or_else(run)
 }
 

@@ -17,15 +17,17 @@ pub(super) struct Late {
     square: Option<Ratio>,
     /// Itself once products are multiplied out: the sum of these.
     terms: Vec<Damped>,
-    /// Sines and cosines of one angle each, by what they are multiplied with; and what the rest keeps within.
-    waves: Vec<(Ratio, [Interval; 2])>,
+    /// Itself where factors stay together: sines and cosines, and what the rest keeps within.
+    waves: Waves,
     rest: Interval,
     constant: bool,
 }
 
-/// A product: a quotient of polynomials, roots of such, the exponential of one, and what keeps within bounds.
+/// A product: a quotient of polynomials, roots of such, the exponential of one, a sine or cosine, and what keeps within bounds.
 #[derive(Clone, Debug)]
 struct Damped {
+    /// The angle of a sine, or of a cosine.
+    wave: Option<(Ratio, Wave)>,
     over: Option<Ratio>,
     /// The square of all roots.
     root: Option<Ratio>,
@@ -33,6 +35,37 @@ struct Damped {
     sign: Interval,
     power: Option<Ratio>,
     rest: Interval,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Wave {
+    Sine,
+    Cosine,
+}
+
+/// Sines and cosines of one angle each, by what that keeps within which they are multiplied with.
+#[derive(Clone, Debug, Default)]
+struct Waves(Vec<(Ratio, [Interval; 2])>);
+
+impl Waves {
+    fn add(&mut self, angle: &Ratio, scales: [Interval; 2]) {
+        match self.0.iter_mut().find(|(known, _)| known == angle) {
+            Some((_, sum)) => *sum = [sum[0] + scales[0], sum[1] + scales[1]],
+            None => self.0.push((angle.clone(), scales)),
+        }
+    }
+
+    fn scaled(&self, by: Interval) -> Waves {
+        Waves(self.0.iter().map(|(angle, scales)| (angle.clone(), scales.map(|scale| by * scale))).collect())
+    }
+
+    /// a sin φ + b cos φ is at most √(a² + b²), whatever a and b do.
+    fn within(&self) -> Interval {
+        let square = |scale: &Interval| Interval::point(scale.size()) * Interval::point(scale.size());
+        let size = |[sine, cosine]: &[Interval; 2]| of(Unary::Sqrt, square(sine) + square(cosine)).high;
+        let most = self.0.iter().map(|(_, scales)| size(scales)).fold(0.0, |sum, size| (sum + size).next_up());
+        Interval { low: -most, high: most }
+    }
 }
 
 /// What `formula` does from `from_s` on.
@@ -51,6 +84,7 @@ struct Lates {
 const MOST_TERMS: usize = 64;
 const ONE: Interval = Interval { low: 1.0, high: 1.0 };
 const ZERO: Interval = Interval { low: 0.0, high: 0.0 };
+const EITHER: Interval = Interval { low: -1.0, high: 1.0 };
 
 impl Lates {
     /// With what the quotient of polynomials tells, where the part is one.
@@ -61,7 +95,7 @@ impl Lates {
             Some(over) => Damped { over: Some(over.clone()), sign: sign_of(within), ..Damped::bounded(ONE) },
             None => Damped::bounded(within),
         };
-        Late { within, ratio, square: None, terms: vec![term], waves: Vec::new(), rest: within, constant: false }
+        Late { within, ratio, square: None, terms: vec![term], waves: Waves::default(), rest: within, constant: false }
     }
 
     /// What has this square, a quotient of polynomials, and a value throughout.
@@ -72,15 +106,26 @@ impl Lates {
         Late { within, rest: within, square: Some(root), terms: vec![known], ..part }
     }
 
-    /// The same by the sum of `terms`, of which exponentials that fall, and roots, make more than their ends tell.
+    /// The same by the sum of `terms`, of which quotients, exponentials that fall, and roots make more than their ends tell.
     fn multiplied_out(&self, part: Late, terms: Option<Vec<Damped>>) -> Late {
         let Some(terms) = terms.filter(|terms| part.ratio.is_none() && terms.len() <= MOST_TERMS) else { return part };
-        if terms.iter().all(|term| term.power.is_none() && term.root.is_none()) {
-            return Late { terms, ..part };
-        }
-        let sum = terms.iter().try_fold(ZERO, |sum, term| Some(sum + term.within(self.from_s)?));
+        let sum = self.total(&terms);
         let within = both(part.within, sum);
         Late { within, rest: within, terms, ..part }
+    }
+
+    /// What a sum keeps within, of which sines of one angle make less than each by itself.
+    fn total(&self, terms: &[Damped]) -> Option<Interval> {
+        let (mut waves, mut rest) = (Waves::default(), ZERO);
+        for term in terms {
+            let beside = term.beside_its_wave(self.from_s)?;
+            match &term.wave {
+                Some((angle, Wave::Sine)) => waves.add(angle, [beside, ZERO]),
+                Some((angle, Wave::Cosine)) => waves.add(angle, [ZERO, beside]),
+                None => rest = rest + beside,
+            }
+        }
+        Some(rest + waves.within())
     }
 
     fn product(&self, within: Interval, ratio: Option<Ratio>, [a, b]: [&[Damped]; 2]) -> Late {
@@ -89,52 +134,45 @@ impl Lates {
         self.multiplied_out(self.part(within, ratio), terms)
     }
 
-    /// A sum, of which sines of one angle make less than each by itself.
+    /// A sum, also with sines and cosines apart from what is left whole.
     fn sum(&self, within: Interval, ratio: Option<Ratio>, [a, b]: [&Late; 2], sign: Interval) -> Late {
         let (mut waves, rest) = (a.waves.clone(), a.rest + sign * b.rest);
-        for (angle, scales) in &b.waves {
-            let scales = scales.map(|scale| sign * scale);
-            match waves.iter_mut().find(|(known, _)| known == angle) {
-                Some((_, sum)) => *sum = [sum[0] + scales[0], sum[1] + scales[1]],
-                None => waves.push((angle.clone(), scales)),
-            }
-        }
+        b.waves.scaled(sign).0.into_iter().for_each(|(angle, scales)| waves.add(&angle, scales));
         let terms = a.terms.iter().cloned().chain(b.terms.iter().map(|term| term.scaled(sign))).collect();
         let part = self.multiplied_out(self.part(within, ratio), Some(terms));
-        if waves.is_empty() || self.from_s == 0.0 {
+        if waves.0.is_empty() || self.from_s == 0.0 {
             return part;
         }
-        let size = |[sine, cosine]: &[Interval; 2]| {
-            of(
-                Unary::Sqrt,
-                Interval::point(sine.size()) * Interval::point(sine.size())
-                    + Interval::point(cosine.size()) * Interval::point(cosine.size()),
-            )
-            .high
-        };
-        let most = waves.iter().map(|(_, scales)| size(scales)).fold(0.0, |sum, size| (sum + size).next_up());
-        let swinging = rest + Interval { low: -most, high: most };
-        let within = both(part.within, Some(swinging));
+        let within = both(part.within, Some(rest + waves.within()));
         Late { within, waves, rest, ..part }
     }
 
-    /// The same, multiplied with a number.
+    fn wave(part: Late, angle: &Ratio, wave: Wave, scales: [Interval; 2]) -> Late {
+        let term = Damped { wave: Some((angle.clone(), wave)), ..Damped::bounded(ONE) };
+        Late { terms: vec![term], waves: Waves(vec![(angle.clone(), scales)]), rest: ZERO, ..part }
+    }
+
+    /// The same, multiplied with what keeps within an interval.
     fn scaled(part: Late, a: &Late, by: Interval) -> Late {
-        if a.waves.is_empty() {
+        if a.waves.0.is_empty() {
             return part;
         }
-        let waves = a.waves.iter().map(|(angle, scales)| (angle.clone(), scales.map(|scale| by * scale))).collect();
-        Late { waves, rest: by * a.rest, ..part }
+        Late { waves: a.waves.scaled(by), rest: by * a.rest, ..part }
     }
 }
 
 impl Damped {
     fn bounded(rest: Interval) -> Damped {
-        Damped { over: None, root: None, sign: ONE, power: None, rest }
+        Damped { wave: None, over: None, root: None, sign: ONE, power: None, rest }
+    }
+
+    fn within(&self, from_s: f64) -> Option<Interval> {
+        let swings = if self.wave.is_some() { EITHER } else { ONE };
+        Some(self.beside_its_wave(from_s)? * swings)
     }
 
     /// |p| ≤ c tⁿ and g ≤ −r t make p exp(g) at most c tⁿ exp(−r t), which falls from n/r on.
-    fn within(&self, from_s: f64) -> Option<Interval> {
+    fn beside_its_wave(&self, from_s: f64) -> Option<Interval> {
         if from_s == 0.0 {
             return None;
         }
@@ -186,12 +224,15 @@ impl Damped {
             (Some(a), Some(b)) => f(a, b).map(Some),
             (one, other) => Some(one.clone().or_else(|| other.clone())),
         };
+        // Of two waves one is kept.
+        let swings = if self.wave.is_some() && other.wave.is_some() { EITHER } else { ONE };
         Some(Damped {
+            wave: self.wave.clone().or_else(|| other.wave.clone()),
             over: joined(&self.over, &other.over, Ratio::times)?,
             root: joined(&self.root, &other.root, Ratio::times)?,
             sign: self.sign * other.sign,
             power: joined(&self.power, &other.power, Ratio::plus)?,
-            rest: self.rest * other.rest,
+            rest: self.rest * other.rest * swings,
         })
     }
 }
@@ -206,7 +247,7 @@ fn sign_of(within: Interval) -> Interval {
     match (within.low >= 0.0, within.high <= 0.0) {
         (true, false) => ONE,
         (false, true) => -ONE,
-        (true, true) | (false, false) => Interval { low: -1.0, high: 1.0 },
+        (true, true) | (false, false) => EITHER,
     }
 }
 
@@ -253,8 +294,8 @@ impl Algebra for Lates {
                 Late { terms: vec![Damped { power: Some(power.clone()), ..Damped::bounded(ONE) }], ..part }
             }
             (Unary::Sqrt, Some(square)) if a.within.low >= 0.0 => self.rooted(part, Some(square.clone())),
-            (Unary::Sin, Some(angle)) => Late { waves: vec![(angle.clone(), [ONE, ZERO])], rest: ZERO, ..part },
-            (Unary::Cos, Some(angle)) => Late { waves: vec![(angle.clone(), [ZERO, ONE])], rest: ZERO, ..part },
+            (Unary::Sin, Some(angle)) => Lates::wave(part, angle, Wave::Sine, [ONE, ZERO]),
+            (Unary::Cos, Some(angle)) => Lates::wave(part, angle, Wave::Cosine, [ZERO, ONE]),
             _ => part,
         }
     }
@@ -268,11 +309,7 @@ impl Algebra for Lates {
             Binary::Subtract => self.sum(x - y, ratios.and_then(|(a, b)| a.plus(&b.negated())), [&a, &b], -ONE),
             Binary::Multiply => {
                 let part = self.product(x * y, ratios.and_then(|(a, b)| a.times(b)), [&a.terms, &b.terms]);
-                match (a.constant, b.constant) {
-                    (true, _) => Lates::scaled(part, &b, x),
-                    (_, true) => Lates::scaled(part, &a, y),
-                    _ => part,
-                }
+                if a.waves.0.is_empty() { Lates::scaled(part, &b, x) } else { Lates::scaled(part, &a, y) }
             }
             Binary::Divide => {
                 let [over, root] = [&b.ratio, &b.square].map(|known| known.as_ref().and_then(Ratio::inverse));
@@ -281,7 +318,7 @@ impl Algebra for Lates {
                     false => [Damped::bounded(ONE / y)],
                 };
                 let part = self.product(x / y, ratios.and_then(|(a, b)| a.times(&b.inverse()?)), [&a.terms, &divisor]);
-                if b.constant { Lates::scaled(part, &a, ONE / y) } else { part }
+                Lates::scaled(part, &a, ONE / y)
             }
             Binary::Min | Binary::Max => {
                 let within = Intervals(&[]).binary(function, x, y);
@@ -350,10 +387,15 @@ mod tests {
         for angle in [t() + 1.0, Expression::number(1.0) + t(), t() * 2.0] {
             assert!(is_sharp(&(angle.clone().sin_of() * 3.0 + angle.cos_of() * 4.0), [-5.0, 5.0]));
         }
-        // By what varies waves are not scaled: ±(1 + 1/t) is at most two from one second on.
-        let varies = Expression::number(1.0) / t() + 1.0;
-        let found = within(&(varies * t().sin_of() + t().cos_of()));
-        assert!(found[0] <= -2.3 && found[1] >= 2.3, "{found:?}");
+        // By what varies, too: 1 + 1/t is at most two from one second on.
+        let varies = || Expression::number(1.0) / t() + 1.0;
+        for product in [varies() * t().sin_of(), t().sin_of() * varies(), t().sin_of() / (t() / (t() + 1.0))] {
+            assert!(is_sharp(&(product + t().cos_of()), [-5.0_f64.sqrt(), 5.0_f64.sqrt()]));
+        }
+        // Factors that are unbounded by themselves are weighed together first.
+        assert!(is_sharp(&(t().cos_of() * t() / (t() + 1.0) + t().sin_of()), [-2.0_f64.sqrt(), 2.0_f64.sqrt()]));
+        // Of two sines in one product one is taken.
+        assert!(is_sharp(&(t().sin_of() * t().sin_of() * 3.0 + t().cos_of() * 4.0), [-5.0, 5.0]));
     }
 
     /// t e^−t is at most 1/e and falls from 1 s on, whatever swings beside it and whatever else is added before it is multiplied.
@@ -361,15 +403,16 @@ mod tests {
     fn sums_are_multiplied_out_before_exponentials_are_weighed() {
         let fall = || (-t()).exp_of();
         let e = core::f64::consts::E;
-        assert!(is_sharp(&((t() * t().sin_of() + t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
-        assert!(is_sharp(&(fall() * (t().cos_of() - t() * t().sin_of())), [-2.0 / e, 2.0 / e]));
-        assert!(is_sharp(&-((t() * t().sin_of() + t() * t().cos_of()) * fall()), [-2.0 / e, 2.0 / e]));
+        let both = 2.0_f64.sqrt() / e;
+        assert!(is_sharp(&((t() * t().sin_of() + t().cos_of()) * fall()), [-both, both]));
+        assert!(is_sharp(&(fall() * (t().cos_of() - t() * t().sin_of())), [-both, both]));
+        assert!(is_sharp(&-((t() * t().sin_of() + t() * t().cos_of()) * fall()), [-both, both]));
         // What is taken away keeps its sign.
         assert!(is_sharp(&(t() * t().sin_of() * fall() - 2.0), [-2.0 - 1.0 / e, -2.0 + 1.0 / e]));
         // What is a quotient of polynomials is kept whole: t − t²/(1 + t) is at most one.
         let bounded = t() - t().power(2.0) / (t() + 1.0);
         assert!(is_sharp(&(bounded * t().sin_of()), [-1.0, 1.0]));
-        // Without an exponential or a root there is nothing to gain, and with one that grows nothing is known.
+        // What grows is not bounded by that.
         assert!(within(&((t() * t().sin_of() + t().cos_of()) * 2.0))[1].is_infinite());
         assert!(within(&((t() * t().sin_of() + t().cos_of()) * t().exp_of()))[1].is_infinite());
     }

@@ -2,11 +2,13 @@
 
 use forwardstep_core::expression::{Expression, Interval, Number};
 use forwardstep_sim::Setup;
+use forwardstep_sim::leader::Following;
 use forwardstep_sim::reference::Desired;
 use forwardstep_sim::trajectory::{Path, Trajectory};
+use num_traits::{Signed, ToPrimitive};
 
 use super::courses::Course;
-use super::enclosure::{Reach, enclosed, found, late_or_whole};
+use super::enclosure::{enclosed, found, late_or_whole};
 use super::late::late;
 use super::numbers::sum;
 use super::producers::Claim;
@@ -28,7 +30,6 @@ const ROOM: f64 = 1e-9;
 
 /// How far the derivatives of targets, or of a leader, are bounded, or one that is not.
 pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    let reach = claim.reach();
     let mut order = 3;
     let mut motions: Vec<(&Trajectory, usize)> = Vec::new();
     if claim.id == Id::BoundedLeader {
@@ -60,7 +61,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
                 let each = trees.iter().skip(lowest).map(|tree| late_or_whole(tree, t));
                 each.reduce(Interval::hull).unwrap_or(Interval::point(0.0))
             };
-            range = wider(range, found(&course.stretches(), size, setup.time.end_s, reach, |_| true)?.range);
+            range = wider(range, found(&course.stretches(), size, |_| true)?.range);
         }
     }
     Some(Proof::Derivatives(order, range))
@@ -101,34 +102,56 @@ pub(super) fn sign_gain(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     if claim.answer == Answer::Violated {
         return instant(trajectory, &drive, following.gain, setup.time.end_s);
     }
-    let enclosure = |path: &Path| -> Option<Enclosure> {
-        let course = Course::of(path);
-        if let Some(formula) = course.formula() {
-            let sum = weighted(&resolved(formula), &drive)?;
-            let slope = slopes::slope(&sum);
-            // What is multiplied here is rounded, and exact for a checker.
-            let enclose = |t: Interval| {
-                let within =
-                    if t.high.is_finite() { on_piece(&sum, slope.as_ref(), t) } else { late_or_whole(&sum, t) };
-                within.with_room(ROOM * within.size())
-            };
-            let stays = |within: Interval| within.size() < following.gain;
-            return found(&course.stretches(), enclose, setup.time.end_s, claim.reach(), stays);
-        }
-        // As a checker adds them: each derivative by itself.
-        let weighted = |t: Interval| {
-            let parts = course
-                .enclose_derivatives(drive.len() - 1, t)
-                .into_iter()
-                .zip(drive)
-                .filter(|(_, weight)| *weight != 0.0);
-            let scaled = parts.map(|(part, weight)| (part.low * weight, part.high * weight));
-            let (low, high) = scaled.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
-            Interval { low, high }.with_room(1e-9 * low.abs().max(high.abs()))
+    let paths = trajectory.paths().iter();
+    let below = |path| drive_below(path, &drive, following.gain);
+    paths.map(below).collect::<Option<_>>().map(Proof::Drive)
+}
+
+/// That Σ `drive[k]` · (k-th derivative) of a path is smaller than `most` in size, as a checker would find it.
+fn drive_below(path: &Path, drive: &[f64], most: f64) -> Option<Enclosure> {
+    let course = Course::of(path);
+    let stays = |within: Interval| within.size() < most;
+    if let Some(formula) = course.formula() {
+        let sum = weighted(&resolved(formula), drive)?;
+        let slope = slopes::slope(&sum);
+        // What is multiplied here is rounded, and exact for a checker.
+        let enclose = |t: Interval| {
+            let within = if t.high.is_finite() { on_piece(&sum, slope.as_ref(), t) } else { late_or_whole(&sum, t) };
+            within.with_room(ROOM * within.size())
         };
-        found(&course.stretches(), weighted, setup.time.end_s, claim.reach(), |within| within.size() < following.gain)
+        return found(&course.stretches(), enclose, stays);
+    }
+    // As a checker adds them: each derivative by itself.
+    let weighted = |t: Interval| {
+        let parts = course.enclose_derivatives(drive.len() - 1, t).into_iter().zip(drive);
+        let scaled =
+            parts.filter(|(_, weight)| **weight != 0.0).map(|(part, weight)| (part.low * weight, part.high * weight));
+        let (low, high) = scaled.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+        Interval { low, high }.with_room(1e-9 * low.abs().max(high.abs()))
     };
-    trajectory.paths().iter().map(enclosure).collect::<Option<_>>().map(Proof::Drive)
+    found(&course.stretches(), weighted, stays)
+}
+
+/// By how much a bound may exceed what is reached, as a part: tried in this order.
+const AIMS: [f64; 3] = [1.001, 1.01, 1.1];
+
+/// A bound of what drives the leader away, for ever; infinite where nothing could be shown. What swings and settles, as tanh t sin t, is
+/// bounded more closely by the rules that a checker has, which take sines and cosines of one angle together.
+pub(crate) fn drive_bound(following: &Following) -> f64 {
+    let drive = following.drive();
+    let closer = |path: &Path, known: f64| {
+        let Path::Formula(formula) = path else { return None };
+        let reached = formula.combination_for_ever(&drive).reaches.size();
+        let aims = AIMS.into_iter().map(|aim| aim * reached).filter(|most| *most < known);
+        let [low, high] = aims.into_iter().find_map(|most| drive_below(path, &drive, most))?.within;
+        Some(low.abs().max(high).to_f64()?.next_up())
+    };
+    let Some(leader) = following.motion() else { return f64::INFINITY };
+    let bound = |path: &Path| {
+        let known = path.bounds(&drive, None).size();
+        closer(path, known).unwrap_or(known)
+    };
+    leader.trajectory.paths().iter().map(bound).fold(0.0, f64::max)
 }
 
 /// Σ `weights[k]` · (k-th derivative) as a formula.
@@ -150,7 +173,11 @@ fn instant(trajectory: &Trajectory, drive: &[f64], gain: f64, end_s: f64) -> Opt
     let later = (1..=LATER).map(|look| (end_s * (1_u64 << look) as f64).round());
     // Closely for some time after the run, where something may pass, and ever further apart.
     let soon = (1..=LOOKS).map(|look| end_s * (1.0 + 9.0 * f64::from(look) / f64::from(LOOKS)));
-    for t_s in on_run.chain(soon).chain(later) {
+    // At its points the third derivative of a curve jumps, and has no value for a checker.
+    let is_point = |t_s: &f64| {
+        trajectory.paths().iter().any(|path| matches!(path, Path::Spline(spline) if spline.times_s().contains(t_s)))
+    };
+    for t_s in on_run.chain(soon).chain(later).filter(|t_s| !is_point(t_s)) {
         for (axis, path) in trajectory.paths().iter().enumerate() {
             let value: f64 = path.jet(t_s).iter().zip(drive).map(|(value, weight)| value * weight).sum();
             // Of equal ones the first: far away exponentials have rounded to nothing, which no checker sees.
@@ -184,7 +211,7 @@ pub(super) fn start_attitude(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> 
     }
 }
 
-/// One entry that keeps away from zero for ever, else the norm, for ever or on the run.
+/// One entry that keeps away from zero, else the norm.
 pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let target = setup.agents.get(*claim.agents.first()?)?.target.as_ref()?;
     // Of a pose, after the position.
@@ -193,24 +220,23 @@ pub(super) fn nonzero_quaternion(setup: &Setup, claim: &Claim<'_>) -> Option<Pro
     let away = |within: Interval| within.low > 0.0 || within.high < 0.0;
     let for_ever = |(entry, course): (usize, &Course<'_>)| {
         let enclose = |t: Interval| course.enclose(t);
-        let shown = found(&course.stretches(), enclose, setup.time.end_s, Reach::ForEver, away)?;
+        let shown = found(&course.stretches(), enclose, away)?;
         Some(Proof::EntryAway(entry, shown))
     };
-    let norm = || squares(&entries, setup.time.end_s, claim.reach(), away).map(Proof::Norm);
+    let norm = || squares(&entries, away).map(Proof::Norm);
     match claim.answer {
         Answer::Holds => entries.iter().enumerate().find_map(for_ever).or_else(norm),
-        Answer::HoldsOnHorizon => norm(),
         Answer::Violated => vanishing(target, setup.time.end_s),
-        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }
 
 /// The first stretch on which the sum of squares keeps within something that is `good`.
-fn squares(courses: &[Course<'_>], end_s: f64, reach: Reach, good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
+fn squares(courses: &[Course<'_>], good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
     // A formula may repeat, and has a limit, as a whole.
     let formulas: Option<Vec<Expression>> = courses.iter().map(|course| course.formula().cloned()).collect();
     if let Some(formulas) = formulas {
-        return enclosed(&sum(formulas.into_iter().map(|entry| entry.power(2.0))), end_s, reach, good);
+        return enclosed(&sum(formulas.into_iter().map(|entry| entry.power(2.0))), good);
     }
     // Of several curves the last to end tells when all stay.
     let ends_s = |course: &&Course<'_>| match course {
@@ -218,7 +244,7 @@ fn squares(courses: &[Course<'_>], end_s: f64, reach: Reach, good: impl Fn(Inter
         Course::Curve(spline, _) => spline.ends_s()[1],
     };
     let last = courses.iter().max_by(|one, other| ends_s(one).total_cmp(&ends_s(other)))?;
-    found(&last.stretches(), |t| square(courses, t), end_s, reach, good)
+    found(&last.stretches(), |t| square(courses, t), good)
 }
 
 /// What the sum of squares keeps within on a stretch of time.
@@ -239,19 +265,19 @@ pub(super) fn within_reach(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
     let known = reach(agent, agent.law.downcast()?)?;
     let paths = agent.target.as_ref()?.paths().iter();
     let entries: Vec<Course<'_>> = paths.zip(&known.from).map(|(path, from)| Course::of(path).from(*from)).collect();
-    // The checker knows of no place that is too near for a tree.
-    let least = if known.exact { known.least * known.least } else { -1.0 };
+    // Of a tree it may be that no place is known to be too near.
+    let least = if known.exact || known.least > 0.0 { known.least * known.least } else { -1.0 };
     let most = known.most * known.most;
     match claim.answer {
-        Answer::Holds | Answer::HoldsOnHorizon => {
+        Answer::Holds => {
             let inside = |within: Interval| within.low > least && within.high < most;
-            squares(&entries, setup.time.end_s, claim.reach(), inside).map(Proof::Distance)
+            squares(&entries, inside).map(Proof::Distance)
         }
         Answer::Violated => {
             let t_s = leaves_s(agent.target.as_ref()?, &known, setup.time.end_s)?;
             let found = square(&entries, Interval::point(t_s));
             (found.low > most || found.high < least).then(|| Proof::OutOfReach(Number::written(t_s)))
         }
-        Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
+        Answer::HoldsOnHorizon | Answer::Watched | Answer::NotShown | Answer::NotCovered => None,
     }
 }

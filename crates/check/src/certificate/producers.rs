@@ -3,7 +3,6 @@
 use forwardstep_core::expression::Number;
 use forwardstep_sim::Setup;
 
-use super::enclosure::Reach;
 use super::proof::Proof;
 use super::{delays, gains, motions, numbers, routh, windows};
 use crate::kinds::task_space::left_null;
@@ -17,13 +16,6 @@ pub(super) struct Claim<'a> {
     pub(super) id: Id,
     pub(super) agents: &'a [usize],
     pub(super) answer: Answer,
-}
-
-impl Claim<'_> {
-    /// How far enclosures have to reach for it.
-    pub(super) fn reach(&self) -> Reach {
-        if self.answer == Answer::Holds { Reach::ForEver } else { Reach::Run }
-    }
 }
 
 const PRODUCERS: &[(Id, Producer)] = &[

@@ -36,14 +36,18 @@ pub(super) fn derivatives(formula: &Expression, order: usize) -> Vec<Expression>
     std::iter::successors(Some(formula.clone()), slope).take(order + 1).collect()
 }
 
-/// What a formula keeps within on a bounded stretch of time: by one pass, and from the middle on by the slope.
+/// What a formula keeps within on a bounded stretch of time: by one pass, and by the slope between its ends, or from the middle on.
 pub(super) fn on_piece(formula: &Expression, slope: Option<&Expression>, t_s: Interval) -> Interval {
     let plain = formula.enclose(t_s);
-    let Some(slope) = slope else { return plain };
+    let Some(slope) = slope.map(|slope| slope.enclose(t_s)).filter(|_| plain.is_finite()) else { return plain };
+    let at = |t_s: f64| formula.enclose(Interval::point(t_s));
     let middle = 0.5 * (t_s.low + t_s.high);
     let away = (t_s.high - middle).max(middle - t_s.low).next_up();
-    let straight = formula.enclose(Interval::point(middle)) + slope.enclose(t_s) * Interval { low: -away, high: away };
-    let both = Interval { low: plain.low.max(straight.low), high: plain.high.min(straight.high) };
+    let by_slope = match slope.low >= 0.0 || slope.high <= 0.0 {
+        true => at(t_s.low).hull(at(t_s.high)),
+        false => at(middle) + slope * Interval { low: -away, high: away },
+    };
+    let both = Interval { low: plain.low.max(by_slope.low), high: plain.high.min(by_slope.high) };
     if both.low <= both.high { both } else { plain }
 }
 

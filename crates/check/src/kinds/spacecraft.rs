@@ -3,7 +3,7 @@
 use forwardstep_core::expression::Interval;
 use forwardstep_core::plant;
 use forwardstep_sim::formula::BoundedFormula;
-use forwardstep_sim::trajectory::{LeastNorm, Trajectory};
+use forwardstep_sim::trajectory::{LeastNorm, Path, Trajectory};
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Setup, SpacecraftModel};
 
 use super::{Claim, KindCheck};
@@ -67,8 +67,11 @@ pub(super) fn momentum(agent: &AgentSetup) -> KindEvidence {
     momentum.map_or(KindEvidence::NoSpacecraft, KindEvidence::Momentum)
 }
 
+/// More than rounding makes of a norm, as a part of it.
+const ROUNDING: f64 = 1e-9;
+
 /// The path of the desired attitude, as a quaternion of any norm, must not pass zero. It stays away from it for ever where
-/// one of its entries does; else, on the run, where it cannot get there between two looks, however fast it moves.
+/// one of its entries does, or where it cannot get there between two looks, however fast it moves, and is at rest after the last of them.
 pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEvidence> {
     let away = |axis| {
         let hull = target.hull(axis, 0, None);
@@ -78,18 +81,21 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
     if away > 0.0 {
         return Some(MotionEvidence::EntryAway { least: away });
     }
-    let seen = target.least_norm(end_s);
+    let rests_s: Option<Vec<f64>> = target.paths().iter().map(Path::rests_s).collect();
+    let until_s = rests_s.iter().flatten().copied().fold(end_s, f64::max);
+    let seen = target.least_norm(until_s);
     let square = target.squared_norm().map(|square| BoundedFormula::new(square.sqrt_of(), end_s));
     let least = square.as_ref().map_or(0.0, |norm| norm.for_ever().within.low);
     if least > 0.0 {
         return Some(MotionEvidence::NormAbove { least, until_s: None });
     }
     let fastest = |axis| {
-        let speed = target.hull(axis, 1, Some(end_s));
+        let speed = target.hull(axis, 1, Some(until_s));
         speed.high.max(-speed.low)
     };
     let speed = (0..target.axes()).map(fastest).map(|speed| speed * speed).sum::<f64>().sqrt();
-    let shown = seen.norm - speed * 0.5 * seen.every_s;
+    let between = speed * 0.5 * seen.every_s;
+    let shown = seen.norm - between - ROUNDING * (seen.norm + between);
     let nearest = Some(seen).filter(LeastNorm::vanishes).or_else(|| target.vanishes_later(end_s)).unwrap_or(seen);
     // What comes close to zero, but for rounding, refutes nothing: what does is a proof that others can replay.
     Some(match (vanishing(target, end_s), square) {
@@ -99,7 +105,10 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
         }
         (Some(_), _) => MotionEvidence::NormVanishes { t_s: nearest.t_s },
         // A curve through points.
-        (None, None) if shown > 0.0 => MotionEvidence::NormAbove { least: shown, until_s: Some(end_s) },
+        (None, None) if shown > 0.0 => {
+            let until_s = if rests_s.is_some() { None } else { Some(end_s) };
+            MotionEvidence::NormAbove { least: shown, until_s }
+        }
         (None, _) => MotionEvidence::NormSeen { t_s: nearest.t_s, norm: nearest.norm },
     })
 }

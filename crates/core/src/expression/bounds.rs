@@ -102,7 +102,7 @@ impl Expression {
         if !(to - from).is_finite() {
             return whole;
         }
-        let enclose = |from: f64, to: f64| self.enclose(Interval::new(from, to));
+        let enclose = |from: f64, to: f64| self.enclose_by_slope(&[1.0], Interval::new(from, to));
         search(from, to, CLOSE, enclose, |x| self.eval(x)).and(whole)
     }
 
@@ -115,10 +115,10 @@ impl Expression {
     /// An interval that holds Σₖ `weights[k]` · (k-th derivative) from `from` to `to`, which may be infinite; as
     /// [`bounds`](Self::bounds) is for the value.
     pub fn bounds_of_derivatives(&self, weights: &[f64], from: f64, to: f64) -> Interval {
-        let enclose = |from: f64, to: f64| self.enclose_weighted(weights, Interval::new(from, to));
         if !(to - from).is_finite() {
-            return enclose(from, to);
+            return self.enclose_weighted(weights, Interval::new(from, to));
         }
+        let enclose = |from: f64, to: f64| self.enclose_by_slope(weights, Interval::new(from, to));
         search(from, to, CLOSE, enclose, |x| self.weighted(weights, x))
     }
 
@@ -136,6 +136,27 @@ impl Expression {
         let Some(jet) = room.get_mut(..weights.len()) else { return Interval::WHOLE };
         self.enclose_derivatives(x, jet);
         weighted_interval(weights, jet)
+    }
+
+    /// The same on a bounded stretch, also by the slope: what rises or falls keeps within its ends, and of what does neither the error is
+    /// one of the square of the length, where that of one pass is one of the length. Where the pass gives finite bounds, every part has a
+    /// value and is continuous.
+    fn enclose_by_slope(&self, weights: &[f64], x: Interval) -> Interval {
+        let mut room = [Interval::WHOLE; MOST_DERIVATIVES + 1];
+        let Some(jet) = room.get_mut(..=weights.len()) else { return self.enclose_weighted(weights, x) };
+        self.enclose_derivatives(x, jet);
+        let within = weighted_interval(weights, jet);
+        let slope = weighted_interval(weights, &jet[1..]);
+        if !within.is_finite() {
+            return within;
+        }
+        let at = |x: f64| self.enclose_combination(weights, x);
+        let middle = x.low + 0.5 * (x.high - x.low);
+        let by_slope = match slope.low >= 0.0 || slope.high <= 0.0 {
+            true => at(x.low).hull(at(x.high)),
+            false => at(middle) + slope * (x - Interval::point(middle)),
+        };
+        within.and(by_slope.or_whole())
     }
 }
 
@@ -169,8 +190,8 @@ pub fn search(
     Interval::new(-least, most).or_whole()
 }
 
-/// An upper bound: the stretch whose bound is highest is cut until that bound is close to a value that is taken, or the work
-/// is done.
+/// An upper bound: the stretch whose bound is highest is cut until that bound is close to a value that is taken and tells whether
+/// all values are negative or zero, or the work is done.
 fn highest(from: f64, to: f64, close: f64, bound: impl Fn(f64, f64) -> f64, value: impl Fn(f64) -> f64) -> f64 {
     let mut taken = value(from).max(value(to));
     let mut least = taken;
@@ -182,8 +203,10 @@ fn highest(from: f64, to: f64, close: f64, bound: impl Fn(f64, f64) -> f64, valu
         let (highest, [from, to]) = (bound_of(key), ends.map(f64::from_bits));
         let middle = from + 0.5 * (to - from);
         let gap = highest - taken;
+        // A sign is known, or has been seen to be none.
+        let told = highest <= 0.0 || taken > 0.0;
         // What has no value somewhere has no gap either.
-        if gap.is_nan() || gap <= close * (taken - least) || middle <= from || middle >= to {
+        if gap.is_nan() || told && gap <= close * (taken - least) || middle <= from || middle >= to {
             break;
         }
         stretches.pop();

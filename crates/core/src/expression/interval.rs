@@ -71,7 +71,7 @@ impl Interval {
     /// What the sine of it keeps within.
     #[must_use]
     pub fn sine(self) -> Self {
-        self.wave(Unary::Sin, FRAC_PI_2)
+        if self == Interval::point(0.0) { self } else { self.wave(Unary::Sin, FRAC_PI_2) }
     }
 
     /// Its square root.

@@ -38,6 +38,23 @@ fn cutting_narrows_what_one_pass_overestimates() {
 }
 
 #[test]
+fn a_slope_tells_the_sign_of_what_begins_or_ends_at_zero_and_narrows_what_cancels() {
+    let rising = x().under(Unary::Atan) + x().sin_of();
+    assert_eq!(rising.bounds(0.0, 60.0).low, 0.0);
+    assert_eq!((-rising).bounds(0.0, 60.0).high, 0.0);
+    let falling = Expression::number(1.0) - x().power(3.0) + (Expression::number(1.0) - x()).sin_of();
+    assert_eq!(falling.bounds(0.0, 1.0).low, 0.0);
+    assert_eq!(x().cos_of().bounds_of_derivatives(&[0.0, -1.0], 0.0, 3.0).low, 0.0);
+    // √(x² + 1) − x comes to 0.0083 at 60.
+    let left = ((x().power(2.0) + 1.0).sqrt_of() - x()).bounds(0.0, 60.0);
+    assert!(left.low > 0.008 && left.low < 0.0084 && left.high < 1.001, "{left:?}");
+    // What rises on both sides of a pole is not bounded by its ends, nor an arctangent of it.
+    for pole in [Expression::number(-1.0) / (x() - 3.0), (x() - 3.0).power(-1.0), (x() - 3.0).power(-3.0)] {
+        assert!(!pole.bounds(0.0, 10.0).is_finite() && !pole.under(Unary::Atan).bounds(0.0, 10.0).is_finite());
+    }
+}
+
+#[test]
 fn exact_results_are_not_widened_and_others_are_on_the_side_of_the_truth() {
     let at = |e: &Expression| e.enclose(Interval::point(0.0));
     let tenth = || Expression::number(0.1);

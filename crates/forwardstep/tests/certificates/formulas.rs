@@ -54,6 +54,23 @@ fn what_settles_or_is_made_of_steady_parts_is_certified_for_ever() {
     }
 }
 
+/// One pass of intervals does not know the sign of what begins at zero; the slope does.
+#[test]
+fn delays_that_begin_at_zero_are_read_and_certified() {
+    for delay in [
+        "atan(t) + sin(t)",
+        "(t + sin(t))/(1 + t)",
+        "0.1*t*(1 + 0.5*sin(t))/(1 + t)",
+        "0.2 + (2 + cos(t))*(t + 0.5*sin(3*t))/(5 + t)",
+    ] {
+        accepted(&delayed(delay), "bounded-delays", "holds");
+    }
+    // Below zero at its end, at once, and between two times at which it is zero.
+    for delay in ["sin(t) - t/9", "sin(t) - 2*atan(t)", "sin(3*t)*t/(1 + t)"] {
+        assert!(super::judged_if_read(&delayed(delay), "bounded-delays").is_none(), "{delay}");
+    }
+}
+
 /// What `min`, `max` and `abs` choose for ever has no kink, and what is made of a wave repeats as it does.
 #[test]
 fn kinks_that_are_none_and_waves_of_waves_are_certified() {
@@ -189,6 +206,11 @@ fn leaders_are_certified_up_to_the_gain_that_they_need() {
         ("sin(t)", "1.415"),
         ("t*exp(-t)", "4"),
         ("atan(sin(1.3*t) - t)", "9"),
+        // What swings and settles needs no more than what it settles at: √2 of what is multiplied with the sine.
+        ("tanh(t/5)*sin(t)", "1.43"),
+        ("(1 - exp(-t/3))*sin(t)", "1.43"),
+        ("cos(t)*t/(1 + t)", "1.43"),
+        ("sin(t)/(1 + 1/(1 + t))", "1.43"),
     ] {
         let text = led(&format!("formulas = [\"{motion}\"]"), gain);
         accepted(&text, "bounded-leader", "holds");

@@ -168,6 +168,14 @@ impl Path {
 }
 
 impl Path {
+    /// From when on it is seen to stay where it is, s: a curve after its last point, and what never moves; `None` for others.
+    pub fn rests_s(&self) -> Option<f64> {
+        match self {
+            Path::Spline(spline) => Some(spline.ends_s()[1]),
+            Path::Formula(_) | Path::Sinusoids { .. } => (self.bounds(&[0.0, 1.0], None).size() == 0.0).then_some(0.0),
+        }
+    }
+
     /// When |Σₖ `weights[k]` · (k-th derivative)| is seen to reach `size`, and its value then: at the first of many times looked
     /// at, also far beyond `end_s`, at which that is certain. Of formulas it is enclosed; otherwise it exceeds what rounding
     /// does.

@@ -18,7 +18,7 @@ pub enum MotionEvidence {
     },
     /// The norm of a quaternion stays above this.
     NormAbove {
-        /// For ever by enclosures; until the end of the run by looking often, and by how fast it can change between two looks.
+        /// By enclosures, or by looking often, and by how fast it can change between two looks.
         least: f64,
         /// Until when, s; `None` for ever.
         until_s: Option<f64>,
@@ -64,7 +64,7 @@ impl MotionEvidence {
             MotionEvidence::Derivatives(Bounded::ForEver)
             | MotionEvidence::EntryAway { .. }
             | MotionEvidence::NormAbove { until_s: None, .. } => Answer::Holds,
-            MotionEvidence::NormAbove { until_s: Some(_), .. } => Answer::HoldsOnHorizon,
+            MotionEvidence::NormAbove { until_s: Some(_), .. } => Answer::NotShown,
             MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotShown,
             MotionEvidence::OfAgent => Answer::Watched,
             MotionEvidence::Derivatives(Bounded::Unbounded { .. })

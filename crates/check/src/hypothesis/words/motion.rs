@@ -21,7 +21,10 @@ pub(super) fn words(evidence: &MotionEvidence) -> String {
             format!("its norm is never below {}", rounded_down(*least))
         }
         MotionEvidence::NormAbove { least, until_s: Some(until_s) } => {
-            format!("its norm stays above {} until the end of the run at {} s", rounded_down(*least), seconds(*until_s))
+            let (least, until_s) = (rounded_down(*least), seconds(*until_s));
+            format!(
+                "its norm stays above {least} until the end of the run at {until_s} s, and for all time no bound could be shown"
+            )
         }
         MotionEvidence::NormFades { witness } => {
             let at = witness.map_or(String::new(), |Witness { t_s, value }| {

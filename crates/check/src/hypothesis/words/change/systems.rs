@@ -22,13 +22,15 @@ pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
                 .into()
         }
         MotionEvidence::OfAgent => "a leader whose motion is given before the run".into(),
-        MotionEvidence::NormAbove { .. } | MotionEvidence::NormSeen { .. } => {
+        MotionEvidence::NormAbove { until_s: Some(_), .. } | MotionEvidence::NormSeen { .. } => {
             "an entry that keeps its sign, so that the norm has a bound for all time".into()
         }
         MotionEvidence::NormFades { .. } | MotionEvidence::NormVanishes { .. } => {
             "a quaternion with an entry that keeps away from zero".into()
         }
-        MotionEvidence::Derivatives(Bounded::ForEver) | MotionEvidence::EntryAway { .. } => return None,
+        MotionEvidence::Derivatives(Bounded::ForEver)
+        | MotionEvidence::EntryAway { .. }
+        | MotionEvidence::NormAbove { until_s: None, .. } => return None,
     })
 }
 
