@@ -244,7 +244,8 @@ fn regress_what_the_loop_as_a_whole_bears_limits_the_rule_for_slow_damping() {
     let find = |id: &str| verdicts.iter().find(|verdict| verdict["id"] == id).unwrap();
     let said = find("sampling-margin")["because"].as_str().unwrap();
     assert!(
-        said.contains("roots of up to 4/s, which are not slow beside that mode") && said.contains("whole-loop"),
+        said.contains("references that answer at up to 6/s, by their roots, weights and λ")
+            && said.contains("whole-loop"),
         "{said}"
     );
     assert_eq!(find("whole-loop")["answer"], "inadequate");

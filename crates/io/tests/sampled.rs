@@ -4,8 +4,9 @@
 use std::ops::ControlFlow;
 
 use forwardstep_check::{Injection, InjectionBalance, InjectionWatch};
+use forwardstep_io::SourceText;
 use forwardstep_io::output::Deployment;
-use forwardstep_io::scenario::open_scenario;
+use forwardstep_io::scenario::{Inputs, Notice, open_scenario, read_scenario};
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate, simulate_watched};
 
@@ -105,6 +106,30 @@ fn regress_modes_that_do_not_grow_within_a_run_are_no_limit_of_its_period() {
     let setup = open_scenario("theorem-7").unwrap().setup;
     let rule = Deployment::default().rule(&setup).unwrap();
     assert!(rule.linearised && rule.period_s > 0.3, "{rule:?}");
+}
+
+/// Of one root and positions q̇ becomes (1 − h (κ₀ + Σ_j w_ij)) q̇ with s = 0 beside what is heard, which decays up to 2/(κ₀ + Σ_j w_ij), however
+/// slow the root is beside K/M. With λ runs bear 136 ms.
+#[test]
+fn regress_what_is_heard_and_lambda_make_a_reference_fast_too() {
+    for (weight, lambda, bears_s) in [(20.0, 0.0, 2.0 / 40.5), (6.0, 0.0, 2.0 / 12.5), (0.5, 10.0, 0.1391)] {
+        let text = format!(
+            "format = 2\ntime.end_s = 60\n[[agents]]\nname = \"m\"\ncount = 3\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n\
+             start.position_m = [[1.0], [-0.5], [0.2]]\n[reference.consensus]\nroots_per_s = [0.5]\nexchange = \"position\"\n\
+             manipulability_gain = {lambda}\n[law.known]\ndamping.gain = 8\n[network]\nweight = {weight}\ndelay.constant_s = 0.1\n\
+             edges.ring.direction = \"both\"\n"
+        );
+        let read = |text: &str| read_scenario("own", &SourceText::new("own.toml", text), Inputs::default()).unwrap();
+        let rule = Deployment::default().rule(&read(&text).setup).unwrap();
+        assert!(rule.linearised && (rule.period_s / bears_s - 1.0).abs() < 0.03, "{rule:?}, not {bears_s} s");
+        // What is advised is fast enough for the loop as a whole.
+        let slow = read(&format!("{text}[control]\nsample_hz = 3\n"));
+        let advised = slow.notices.iter().find_map(|notice| match notice {
+            Notice::CoarseSampling { enough_hz, .. } => *enough_hz,
+            _ => None,
+        });
+        assert!(advised.is_some_and(|hz| hz > 2.0 / bears_s && hz < 2.3 / bears_s), "{advised:?}");
+    }
 }
 
 /// A sampled agent sets its sign by itself, the continuous ones set theirs together, and arms meet the sign while their estimates

@@ -4,11 +4,12 @@
 //! state. At rest they miss what velocities and accelerations make of Y, which for ships is most of it; so that states on the way of the
 //! references are looked at, too.
 
-use forwardstep_sim::{Adaptive, DynamicsAt, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Setup};
 
 use super::PracticalAnswer;
 use super::held::{Hold, longest_period_s};
 use super::led::{Led, way};
+use super::looped::degree;
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping};
 use crate::hypothesis::Named;
@@ -18,7 +19,7 @@ use crate::kinds::is_lagrangian;
 /// is not in the model.
 pub const RECOMMENDED_MARGIN: f64 = 0.5;
 
-/// A reference whose roots are so large a part of K/M, or larger, is no longer slow beside s. Runs of loops with slower ones ceased to work at the
+/// A reference that answers at so large a part of K/M, or faster, is no longer slow beside s. Runs of loops with slower ones ceased to work at the
 /// period of the margin within a tenth, those with faster ones at down to a tenth of it.
 const RIVAL: f64 = 0.3;
 
@@ -46,9 +47,9 @@ pub struct SamplingMargin {
     /// Whether the loop as a whole was seen to decay, with references that answer s: with z frozen, as σ has it, a mode that is as fast as they are
     /// grows sooner than it does.
     pub held_by_references: bool,
-    /// The largest root of any reference, 1/s, where it is more than three tenths of the fastest mode at the start: σ freezes references, which then
-    /// answer what s does before it has decayed.
-    pub rival_root_per_s: Option<f64>,
+    /// How fast the fastest reference answers, 1/s, where that is more than three tenths of the fastest mode at the start: σ freezes references, which
+    /// then answer what s does before it has decayed.
+    pub rival_per_s: Option<f64>,
     /// How many adaptive agents follow targets of their own. They adapt with the s of the sample that gave Y, for which no margin is
     /// known: their σ is that of the damping alone.
     pub adaptation_left_out: usize,
@@ -73,14 +74,16 @@ pub struct MarginAt {
     pub fastest_per_s: f64,
 }
 
-/// The largest distance from zero of the roots of any agent's reference, 1/s.
-fn fastest_root_per_s(setup: &Setup) -> Option<f64> {
-    let all = setup.agents.iter().flat_map(|agent| {
-        let pairs =
-            agent.roots_per_s.pairs.iter().map(|pair| (pair.real * pair.real + pair.imaginary * pair.imaginary).sqrt());
-        agent.roots_per_s.real.iter().copied().chain(pairs)
-    });
-    all.reduce(f64::max)
+/// How fast any agent's reference answers at most, about, 1/s: the largest distance of a root from zero, what is heard, Σ_j w_ij, and what λ, in
+/// 1/s^ℓ, gives way together. With one root and λ = 0 it is that, κ₀ + Σ_j w_ij.
+pub(crate) fn fastest_reference_per_s(setup: &Setup) -> f64 {
+    let answers = |(index, agent): (usize, &AgentSetup)| {
+        let roots = &agent.roots_per_s;
+        let pairs = roots.pairs.iter().map(|pair| libm::hypot(pair.real, pair.imaginary));
+        let root = roots.real.iter().copied().chain(pairs).fold(0.0, f64::max);
+        root + degree(setup, index) + libm::pow(agent.manipulability, 1.0 / roots.len().max(1) as f64)
+    };
+    setup.agents.iter().enumerate().map(answers).fold(0.0, f64::max)
 }
 
 /// Where a margin is looked at.
@@ -104,9 +107,9 @@ impl SamplingMargin {
         SamplingMargin::on(setup, &way(setup))
     }
 
-    /// Whether it speaks of every agent, and no reference is a rival of it: all are under (6)–(7), with roots that are slow beside their damping.
+    /// Whether it speaks of every agent, and no reference is a rival of it: all are under (6)–(7), with references that are slow beside their damping.
     pub fn is_enough(setup: &Setup) -> bool {
-        let outrun = || SamplingMargin::of(setup).is_none_or(|margin| margin.rival_root_per_s.is_some());
+        let outrun = || SamplingMargin::of(setup).is_none_or(|margin| margin.rival_per_s.is_some());
         setup.agents.iter().all(is_lagrangian) && !outrun()
     }
 
@@ -135,7 +138,7 @@ impl SamplingMargin {
             recommended_s: longest(RECOMMENDED_MARGIN),
             anywhere: anywhere_per_s.map(|rate| period_s * rate / hold.largest_gain(period_s)),
             held_by_references: false,
-            rival_root_per_s: fastest_root_per_s(setup).filter(|root| *root > RIVAL * start.fastest_per_s),
+            rival_per_s: Some(fastest_reference_per_s(setup)).filter(|rate| *rate > RIVAL * start.fastest_per_s),
             adaptation_left_out: learners.filter(|agent| setup.agents[*agent].law.is::<Adaptive>()).count(),
             start,
             worst,

@@ -45,6 +45,7 @@ pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionCourse, InjectionWatch, NAMED_SHARE};
 pub use loads::StaticLoad;
 pub use looped::{LoopAt, LoopRate, Trial, WholeLoop};
+pub(crate) use margin::fastest_reference_per_s;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};
 pub(crate) use power::{is_fed, start_energy_j};

@@ -194,15 +194,15 @@ fn whole(found: &WholeLoop) -> String {
     };
     let advice = match last.rate().ideal_per_s.or(start.rate().ideal_per_s) {
         Some(_) => {
-            "where velocities were measured and samples fast, it would not: sample faster, filter less, or let the roots be slower"
+            "where velocities were measured and samples fast, it would not: sample faster, filter less, or let roots, weights or λ be smaller"
         }
-        None => "sample faster, filter less, or let the roots be slower",
+        None => "sample faster, filter less, or let roots, weights or λ be smaller",
     };
     let meaning = match (found.lasting_per_s(), found.start_per_s(), found.amplified()) {
         _ if let Some(t_s) = found.trial.lost_s => format!(
             "in a trial the agents have run away by {} s, which they do not where samples are fast; sample faster{}",
             rounded(t_s),
-            if found.adapts { ", or adapt more slowly" } else { ", or let the roots be slower" }
+            if found.adapts { ", or adapt more slowly" } else { ", or let roots, weights or λ be smaller" }
         ),
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
@@ -279,10 +279,11 @@ fn periods(margin: &SamplingMargin) -> String {
         || format!("no period brings it below {RECOMMENDED_MARGIN}, which is recommended"),
         |period_s| format!("keep it below {RECOMMENDED_MARGIN}, a period of {} ms", ms(period_s)),
     );
-    let faster = margin.rival_root_per_s.map_or_else(String::new, |root| {
+    let faster = margin.rival_per_s.map_or_else(String::new, |rate| {
         format!(
-            "; beside references with roots of up to {}/s, which are not slow beside that mode, shorter periods may be needed, of which whole-loop speaks",
-            rounded(root)
+            "; beside references that answer at up to {}/s, by their roots, weights and λ, and are not slow beside that mode, shorter periods may be \
+             needed, of which whole-loop speaks",
+            rounded(rate)
         )
     });
     format!("it reaches 1 at a period of {} ms; {half}{faster}", ms(longest_s))

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use forwardstep_check::{
-    FastestDamping, MarginAt, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, fastest_damping,
+    FastestDamping, MarginAt, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, WholeLoop, fastest_damping,
 };
 use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, PositionKind, Setup};
 
@@ -228,11 +228,23 @@ impl Notice {
     pub(super) fn coarse_sampling(setup: &Setup) -> Option<Notice> {
         let margin = SamplingMargin::of(setup)?;
         let SamplingMargin { worst: MarginAt { agent, sigma, .. }, recommended_s, .. } = &margin;
+        // Beside references that are not slow, the loop as a whole may bear less, of which again half is recommended.
+        let whole_s = || {
+            let sampled = |period_s: f64| {
+                let mut sampled = setup.clone();
+                sampled.control.iter_mut().for_each(|control| control.sample_hz = 1.0 / period_s);
+                sampled
+            };
+            margin.rival_per_s.and_then(|_| WholeLoop::longest_period_s(margin.period_s, sampled))
+        };
         (margin.answer() > PracticalAnswer::Adequate).then(|| Notice::CoarseSampling {
             agent: agent.name.clone(),
             sigma: *sigma,
             // A little more, since it is shown rounded.
-            enough_hz: recommended_s.map(|period_s| 1.05 / period_s),
+            enough_hz: recommended_s.map(|period_s| {
+                let whole_s = whole_s().map_or(f64::INFINITY, |whole_s| RECOMMENDED_MARGIN * whole_s);
+                1.05 / period_s.min(whole_s)
+            }),
             too_large: margin.too_large(),
         })
     }

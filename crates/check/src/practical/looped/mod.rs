@@ -41,7 +41,7 @@ mod trial;
 use forwardstep_sim::{AgentSetup, Periods, Setup};
 
 use self::linear::Linear;
-use self::network::degree;
+pub(super) use self::network::degree;
 use self::place::{NOISE, Place};
 use super::PracticalAnswer;
 use super::led::{Led, way};

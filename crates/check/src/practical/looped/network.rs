@@ -17,7 +17,7 @@ const MOST_AGENTS: usize = 100;
 const SLACK_PERIODS: f64 = 1e-6;
 
 /// The largest Σ_j w_ij of an agent in any phase; zero where it follows a target or a leader, whose sign has no derivative.
-pub(super) fn degree(setup: &Setup, agent: usize) -> f64 {
+pub(in crate::practical) fn degree(setup: &Setup, agent: usize) -> f64 {
     if setup.tracks(agent) || setup.following().is_some() {
         return 0.0;
     }
