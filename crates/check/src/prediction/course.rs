@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::agreement::{NoPrediction, predict};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
-use crate::practical::{Gains, start_energy_j};
+use crate::practical::{Gains, fastest_reference_per_s, start_energy_j};
 use crate::surroundings::acts;
 
 use super::cascade::{CascadeSpread, NoCascade};
@@ -172,7 +172,7 @@ pub fn course_within(
         return Err(NoCourse::Axes);
     }
     let before = told_before(setup, &ideal);
-    let (ideal, parts) = with_enough_rows(ideal);
+    let Rows { ideal, parts, are_close } = with_enough_rows(ideal);
     let recording = completed(&ideal, before.as_deref(), &mut work, observer)?;
     let disagreement = disagreement(&recording, axes);
     let within = match before {
@@ -181,7 +181,9 @@ pub fn course_within(
         Some(_) | None => CascadeSpread::of(&ideal, &recording).map(|spread| spread.last()),
     };
     let settled = settled(&recording.t_s, &disagreement);
-    let (value, peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
+    let (value, mut peak_torques) = (means(&recording, axes), peak_torques(setup, &recording));
+    // What lies between rows is then not known.
+    peak_torques.iter_mut().filter(|_| !are_close).for_each(|peak| peak.at_most = None);
     let (start, moved_by_s) = (StartError::of(setup), moved_by_s(setup));
     let last = recording.t_s.len().saturating_sub(1);
     let of_run = |all: Vec<f64>| -> Vec<f64> {
@@ -192,21 +194,32 @@ pub fn course_within(
     Ok(Course { disagreement, value, within, settled, peak_torques, start, moved_by_s, t_s })
 }
 
-/// Rows of a course at least, since what settles, and what peaks, does so between the rows of a run that has few; and rows times axes that are
-/// not exceeded for that.
+/// Rows of a course at least, since what settles, and what peaks, does so between the rows of a run that has few; how far apart they are in units
+/// of the fastest answer of a reference, so that what swings once in between exceeds them by (0.05)²/8 of itself; and rows times axes that are not
+/// exceeded for that.
 const LEAST_ROWS: f64 = 1000.0;
+const CLOSE: f64 = 0.05;
 const MOST_ENTRIES: f64 = 1e6;
 
-/// The same setup with so many parts of each interval between two rows that there are enough, and how many.
-fn with_enough_rows(mut ideal: Setup) -> (Setup, usize) {
+struct Rows {
+    ideal: Setup,
+    /// Of each interval between two rows of the run.
+    parts: usize,
+    are_close: bool,
+}
+
+/// The same setup with so many parts of each interval between two rows that there are enough.
+fn with_enough_rows(mut ideal: Setup) -> Rows {
     let axes: usize = ideal.agents.iter().map(|agent| agent.robot.axes.len()).sum();
+    let close = ideal.time.record_every_s * fastest_reference_per_s(&ideal) / CLOSE;
     let time = &mut ideal.time;
-    let parts = (LEAST_ROWS.min(MOST_ENTRIES / axes as f64) * time.record_every_s / time.end_s).ceil();
-    if time.record_at != RecordAt::Intervals || parts.is_nan() || parts <= 1.0 {
-        return (ideal, 1);
+    let rows = time.end_s / time.record_every_s;
+    if time.record_at != RecordAt::Intervals {
+        return Rows { ideal, parts: 1, are_close: false };
     }
+    let parts = close.max(LEAST_ROWS / rows).min(MOST_ENTRIES / axes as f64 / rows).ceil().max(1.0);
     time.record_every_s /= parts;
-    (ideal, parts as usize)
+    Rows { ideal, parts: parts as usize, are_close: close <= parts }
 }
 
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.
@@ -223,7 +236,7 @@ pub(crate) fn reference_behind(setup: &Setup, mut work: f64) -> Option<Recording
 }
 
 /// The positions of all agents on an axis.
-fn positions(recording: &Recording, axis: usize) -> impl Iterator<Item = &[f64]> {
+pub(super) fn positions(recording: &Recording, axis: usize) -> impl Iterator<Item = &[f64]> {
     let of_axis = move |column: &&forwardstep_sim::Column| column.signal == Signal::Position && column.axis == axis;
     recording.columns.iter().filter(of_axis).map(|column| column.values.as_slice())
 }

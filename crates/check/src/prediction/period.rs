@@ -3,17 +3,25 @@
 //! Over one common period of switching and delays the reference dynamics with s ≡ 0 are one linear operator on the cascaded
 //! variables and the messages on their way. Applied again and again to a start that looks arbitrary it leaves what its largest
 //! eigenvalue beside one leaves. The operator is the shipped engine, run over many periods on one axis; the size is the width of the interval of
-//! all cascaded variables (`cascade`), which is a norm of what is not yet agreed upon. So a repeated or complex eigenvalue shows as a
-//! factor that wavers from period to period, which is reported.
+//! all cascaded variables (`cascade`), which is a norm of what is not yet agreed upon.
+//!
+//! The mean of the factors of single periods is that eigenvalue where it is real and the others have died out. Few periods may be seen before
+//! nothing is left, and a pair of complex eigenvalues makes the factors waver; so that what all positions do is fitted by a few eigenvalues
+//! (Prony's method): with x_k the positions against the first over the k-th period, divided by the mean factor to the power of k, the smallest c
+//! with x_(k+p) + Σ_j c_j x_(k+j) ≈ 0 makes a polynomial z^p + Σ_j c_j z^j whose largest root is the eigenvalue in units of the mean factor, and
+//! whose other roots keep within the unit circle. How far single factors are from it is reported.
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::{AgentSetup, Axis, Method, Progress, Setup, Solver, Start, TimeSpan};
+use forwardstep_sim::{AgentSetup, Axis, Method, Progress, Recording, Setup, Solver, Start, TimeSpan};
+use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::cascade::{CascadeSpread, NoCascade};
+use super::course::positions;
 use super::ideal::{NoIdeal, ideal};
 use super::repeats::{MOST_ROUNDS, Repeats};
+use super::roots::eigenvalues::eigenvalues;
 use super::unfinished::{Unfinished, completed};
 
 /// What a period leaves of a disagreement, for s ≡ 0.
@@ -116,20 +124,33 @@ pub fn period_rate_within(
             record_every_s: period_s / ROWS as f64,
             record_at: forwardstep_sim::RecordAt::Intervals,
         };
-        let widths = CascadeSpread::of(&alone, &completed(&alone, None, &mut work, observer)?)?.widths();
+        let recording = completed(&alone, None, &mut work, observer)?;
+        let widths = CascadeSpread::of(&alone, &recording)?.widths();
         let each: Vec<f64> = (0..=periods).filter_map(|k| widths.get(k * ROWS)).copied().collect();
         let start = each.first().copied().unwrap_or(0.0);
         // The first is the start.
         let seen = each.iter().skip(1).take_while(|width| **width > FLOOR * start).count();
         if seen < periods || each[periods] < FALLEN * start || 2 * periods > most {
-            return factor(&each[..=seen], period_s);
+            return factor(&each[..=seen], &apart(&recording), period_s);
         }
         periods *= 2;
     }
 }
 
-/// The mean factor over the second half of what was seen.
-fn factor(widths: &[f64], period_s: f64) -> Result<PeriodRate, NoPeriodRate> {
+/// The positions of all agents against that of the first, period by period.
+fn apart(recording: &Recording) -> Vec<DVector<f64>> {
+    let columns: Vec<&[f64]> = positions(recording, 0).collect();
+    let Some((first, others)) = columns.split_first() else { return Vec::new() };
+    let of_period = |from: usize| {
+        let rows = from..from + ROWS;
+        let each = others.iter().flat_map(|other| rows.clone().map(|row| other[row] - first[row]));
+        DVector::from_iterator(ROWS * others.len(), each)
+    };
+    (0..(recording.t_s.len() - 1) / ROWS).map(|k| of_period(k * ROWS)).collect()
+}
+
+/// By the mean over the second half of what was seen, and by the largest eigenvalue that fits all periods.
+fn factor(widths: &[f64], apart: &[DVector<f64>], period_s: f64) -> Result<PeriodRate, NoPeriodRate> {
     let seen = widths.len() - 1;
     let first = seen / 2;
     let periods = seen - first;
@@ -141,10 +162,46 @@ fn factor(widths: &[f64], period_s: f64) -> Result<PeriodRate, NoPeriodRate> {
     if total > -1e-6 {
         return Err(NoPeriodRate::Stays { periods: seen });
     }
-    let factor = libm::exp(total / periods as f64);
+    let mean = libm::exp(total / periods as f64);
+    let clear = widths.iter().take_while(|width| **width > FALLEN * widths[0]).count().min(apart.len());
+    let factor = fitted(&apart[clear.saturating_sub(FITTED).max(1).min(clear)..clear], mean).unwrap_or(mean);
     let off = |pair: &[f64]| (pair[1] / pair[0] / factor - 1.0).abs();
     let wavers = widths[first..].windows(2).map(off).fold(0.0, f64::max);
-    Ok(PeriodRate { period_s, factor, rate_per_s: total / periods as f64 / period_s, wavers, periods })
+    Ok(PeriodRate { period_s, factor, rate_per_s: libm::log(factor) / period_s, wavers, periods })
+}
+
+/// Periods that are fitted at most, the last ones, and by how many eigenvalues.
+const FITTED: usize = 24;
+const EIGENVALUES: usize = 4;
+/// What is smaller than the largest by this is noise.
+const NOISE: f64 = 1e-5;
+
+/// The largest eigenvalue in size; `None` where none fits that is below one.
+fn fitted(apart: &[DVector<f64>], mean: f64) -> Option<f64> {
+    let order = EIGENVALUES.min(apart.len() / 2);
+    if order == 0 {
+        return None;
+    }
+    let scaled: Vec<DVector<f64>> = apart.iter().enumerate().map(|(k, x)| x / libm::pow(mean, k as f64)).collect();
+    let (size, equations) = (scaled[0].len(), scaled.len() - order);
+    let mut system = DMatrix::zeros(size * equations, order);
+    let mut right = DVector::zeros(size * equations);
+    for k in 0..equations {
+        for j in 0..order {
+            system.view_mut((size * k, j), (size, 1)).copy_from(&scaled[k + j]);
+        }
+        right.rows_mut(size * k, size).copy_from(&-&scaled[k + order]);
+    }
+    // By the normal equations, which are small: of what is noise nothing is taken.
+    let normal = (system.transpose() * &system).svd(true, true);
+    let floor = NOISE * NOISE * normal.singular_values.max();
+    let c = normal.solve(&(system.transpose() * right), floor).ok()?;
+    let companion = DMatrix::from_fn(order, order, |row, column| match column + 1 == order {
+        true => -c[row],
+        false => f64::from(u8::from(row == column + 1)),
+    });
+    let largest = eigenvalues(&companion)?.into_iter().map(|root| libm::hypot(root.re, root.im)).fold(0.0, f64::max);
+    Some(mean * largest).filter(|factor| *factor > 0.0 && *factor < 1.0)
 }
 
 /// The same agents on one axis, with starts that look arbitrary, and a solver that sees small differences.

@@ -200,7 +200,7 @@ fn of_agent(
     let (mut evaluator, no_error) = (model.evaluator(), vec![0.0; axes]);
     // Numbers are many, so no row has lists of its own.
     let [mut now_q, mut now_dq, mut now_ddq] = [(); 3].map(|()| vec![0.0; axes]);
-    let mut torques = Vec::with_capacity(axes);
+    let mut peak_rows = vec![0; axes];
     let put = |columns: &[&[f64]], row: usize, now: &mut [f64]| {
         for (column, now) in columns.iter().zip(now) {
             *now = *column.get(row)?;
@@ -213,25 +213,33 @@ fn of_agent(
         put(&ddq, row, &mut now_ddq)?;
         let motion = TwoVelocity { q: &now_q, dq: &now_dq, z: &now_dq, dz: &now_ddq };
         let along = &evaluator.at(theta, motion, &no_error).ok()?.model;
-        torques.clear();
         let begins = begins.as_ref().filter(|_| row == 0);
-        for (axis, peak) in peaks.iter_mut().enumerate() {
+        for (axis, (peak, peak_row)) in peaks.iter_mut().zip(&mut peak_rows).enumerate() {
             let value = begins.map_or(along[axis], |begins| begins[axis]);
             if value.abs() > peak.value.abs() {
-                (peak.value, peak.t_s) = (value, *t_s);
+                (peak.value, peak.t_s, *peak_row) = (value, *t_s, row);
             }
-            torques.push(value.abs());
         }
-        if let Some(allowance) = allowance.as_ref().filter(|_| row % stride == 0) {
-            let added = allowance.at(&model.dynamics_at(theta, motion).ok()?);
-            most = most.zip(added).map(|(most, added)| {
-                let both = most.iter().zip(torques.iter().zip(&added));
-                both.map(|(most, (torque, added))| most.max(torque + added)).collect()
-            });
+    }
+    // Where the torque itself is largest counts, however few the other rows are.
+    let looked = (0..ideal.t_s.len()).step_by(stride).chain(peak_rows);
+    for row in looked.filter(|_| allowance.is_some()) {
+        put(&q, row, &mut now_q)?;
+        put(&dq, row, &mut now_dq)?;
+        put(&ddq, row, &mut now_ddq)?;
+        let motion = TwoVelocity { q: &now_q, dq: &now_dq, z: &now_dq, dz: &now_ddq };
+        let along = evaluator.at(theta, motion, &no_error).ok()?.model.clone();
+        let Some(added) =
+            allowance.as_ref().and_then(|allowance| allowance.at(&model.dynamics_at(theta, motion).ok()?))
+        else {
+            most = None;
+            break;
+        };
+        for (most, (torque, added)) in most.iter_mut().flatten().zip(along.iter().zip(&added)) {
+            *most = most.max(torque.abs() + added);
         }
     }
     for (peak, most) in peaks.iter_mut().zip(most.into_iter().flatten()) {
-        // Between the rows that were looked at the predicted torque itself may be larger.
         peak.at_most = Some(most.max(peak.value.abs())).filter(|most| most.is_finite());
     }
     Some(peaks)

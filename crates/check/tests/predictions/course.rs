@@ -15,7 +15,7 @@ use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, Setup, Signal, Start};
 
 use crate::common::kinds::{blind_mass, cascade, chain, rest_at, tracking};
-use crate::common::{arm, column, edge, noise, run, setup};
+use crate::common::{arm, column, edge, masses, noise, run, setup};
 
 fn go_on(_: Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
@@ -255,6 +255,32 @@ fn regress_what_settles_and_peaks_between_two_rows_is_that_of_many() {
     for (peak, known) in few.peak_torques.iter().zip(&many.peak_torques) {
         assert!((peak.value - known.value).abs() < 0.01 * known.value, "{peak:?} {known:?}");
     }
+}
+
+/// A run of 400 s with two rows a second peaks within its first tenth of a second.
+#[test]
+fn regress_what_peaks_at_once_is_found_however_long_the_run_is() {
+    let edges = vec![edge(0, 1, 20.0, 0), edge(1, 0, 20.0, 0)];
+    let mut setup = masses(Exchange::Position, 2, Schedule::fixed(edges), vec![Delay::constant(0.3)]);
+    setup.agents.truncate(2);
+    setup.network.agents = 2;
+    setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = vec![6.0, 8.0].into());
+    let with = |setup: &Setup, end_s, record_every_s| {
+        let mut setup = setup.clone();
+        (setup.time.end_s, setup.time.record_every_s) = (end_s, record_every_s);
+        predicted(&setup)
+    };
+    let (long, close) = (with(&setup, 400.0, 0.5), with(&setup, 5.0, 0.0005));
+    assert_eq!((long.t_s.len(), long.t_s[1]), (801, 0.5));
+    for (peak, known) in long.peak_torques.iter().zip(&close.peak_torques) {
+        assert!((peak.value / known.value - 1.0).abs() < 3e-4 && known.t_s < 0.2, "{peak:?} {known:?}");
+        assert!(peak.at_most.unwrap() > known.value.abs() * (1.0 - 3e-4), "{peak:?} {known:?}");
+    }
+    // With so many agents there is no room for rows that are close: what lies between them is not bounded.
+    setup.agents = (0..200).flat_map(|_| setup.agents.clone()).collect();
+    setup.network.agents = 400;
+    let crowd = with(&setup, 400.0, 0.5);
+    assert!(crowd.peak_torques.len() == 800 && crowd.peak_torques.iter().all(|peak| peak.at_most.is_none()));
 }
 
 #[test]

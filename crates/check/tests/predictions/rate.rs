@@ -13,6 +13,7 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{AgentSetup, Exchange, Method, Progress, Setup};
+use nalgebra::DMatrix;
 
 use crate::common::{edge, masses, noise};
 
@@ -89,6 +90,25 @@ fn a_root_that_the_start_does_not_excite_is_said_to_be_so() {
     assert_eq!(excited([1.0; 3]).settled, Settled::NoStart);
 }
 
+/// Beside the middle of three, with κ = 1 and w = 2, the ends do ±(2 e^−t − e^−2t) in opposition: (p + κ)(p + w) are their roots.
+#[test]
+fn regress_what_a_start_excites_does_not_depend_on_who_is_the_first() {
+    for middle in 0..3 {
+        let ends: Vec<usize> = (0..3).filter(|agent| *agent != middle).collect();
+        let edges = ends.iter().flat_map(|end| [edge(*end, middle, 2.0, 0), edge(middle, *end, 2.0, 0)]).collect();
+        let mut setup = masses(Exchange::Position, 1, Schedule::fixed(edges), vec![Delay::constant(0.0)]);
+        setup.agents.truncate(3);
+        setup.network.agents = 3;
+        for (index, agent) in setup.agents.iter_mut().enumerate() {
+            let q = ends.iter().position(|end| *end == index).map_or(0.0, |end| [1.0, -1.0][end]);
+            (agent.start.q, agent.start.dq) = (vec![q, 0.0], vec![0.0; 2]);
+            agent.roots_per_s = vec![1.0].into();
+        }
+        let found = rate(&setup).unwrap();
+        assert!((found.excited - 4.0).abs() < 1e-7, "{middle}: {found:?}");
+    }
+}
+
 #[test]
 fn every_reason_for_no_rate_is_the_one_that_is_said() {
     let said = |change: &dyn Fn(&mut Setup)| {
@@ -163,6 +183,27 @@ fn a_period_leaves_what_its_phases_leave() {
     // Slower than that is what −κ₀ leaves.
     let found = period_rate(&in_turns(Exchange::PositionVelocity, weight, dwell_s, 0.6), &mut go_on).unwrap();
     assert!((found.rate_per_s + 0.6).abs() < 5e-3, "{found:?}");
+}
+
+/// Who hears does q̈_i = −κ q̇_i − w (q̇_i + κ q_i − κ q_j), the other q̈_j = −κ q̇_j: exponentials of matrices have the operator of a period. Its
+/// eigenvalues beside one are complex, so that the factors of single periods waver, and few periods are seen.
+#[test]
+fn regress_complex_eigenvalues_of_a_period_have_their_size() {
+    for (weight, dwell_s, root) in [(1.3, 0.8, 1.5), (3.0, 0.4, 1.5), (3.0, 0.8, 2.5), (6.0, 0.4, 2.5)] {
+        let phase = |who: usize| {
+            let mut rates = DMatrix::<f64>::zeros(4, 4);
+            (rates[(0, 2)], rates[(1, 3)], rates[(2, 2)], rates[(3, 3)]) = (1.0, 1.0, -root, -root);
+            rates[(2 + who, 2 + who)] -= weight;
+            (rates[(2 + who, who)], rates[(2 + who, 1 - who)]) = (-weight * root, weight * root);
+            (rates * dwell_s).exp()
+        };
+        let mut sizes: Vec<f64> =
+            (phase(0) * phase(1)).complex_eigenvalues().iter().map(|mu| libm::hypot(mu.re, mu.im)).collect();
+        sizes.sort_by(f64::total_cmp);
+        let found = period_rate(&in_turns(Exchange::Position, weight, dwell_s, root), &mut go_on).unwrap();
+        assert!((sizes[3] - 1.0).abs() < 1e-9 && (sizes[2] / sizes[1] - 1.0).abs() < 1e-9, "{sizes:?}");
+        assert!((found.factor / sizes[2] - 1.0).abs() < 1e-3 && found.wavers > 0.1, "{found:?}, not {sizes:?}");
+    }
 }
 
 #[test]

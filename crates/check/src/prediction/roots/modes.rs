@@ -286,12 +286,13 @@ impl Mode {
 /// Where the largest disagreement of several roots is looked for: ten time constants.
 const STEPS: u32 = 100;
 
-/// The largest difference from the first row, over all rows and columns.
+/// The largest difference of two rows in one column: at the phase at which it is largest, where they are complex.
 fn apart(part: &DMatrix<C>) -> f64 {
     let column = |column: usize| {
         let entries = part.column(column);
-        let first = entries[0];
-        entries.iter().map(|entry| size(*entry - first)).fold(0.0, f64::max)
+        let from =
+            |(k, one): (usize, &C)| entries.iter().skip(k + 1).map(|other| size(*one - *other)).fold(0.0, f64::max);
+        entries.iter().enumerate().map(from).fold(0.0, f64::max)
     };
     (0..part.ncols()).map(column).fold(0.0, f64::max)
 }
