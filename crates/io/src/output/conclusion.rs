@@ -1,13 +1,13 @@
 //! What a run came to, in plain words: whether what was to vanish did, how far it is, and what to change.
 
-use forwardstep_check::{Id, RECOMMENDED_MARGIN, Report};
+use forwardstep_check::{Id, RECOMMENDED_MARGIN, Report, SamplingMargin};
 use forwardstep_sim::recording::{ClippedSamples, Ending, Signal};
 use forwardstep_sim::setup::Setup;
 
 use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
 use super::metrics::Metrics;
 use super::names::{agent_name, gap_unit_on, gap_words, unit};
-use super::prediction::{PredictedRate, Predictions};
+use super::prediction::{PredictedCourse, PredictedRate, Predictions};
 use super::record::RunRecord;
 use super::table::Table;
 use crate::scenario::Goal;
@@ -21,6 +21,8 @@ const FALLS: f64 = 0.9;
 const FALLS_STEADILY: f64 = 0.999;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
+/// A gap that is so many times what the design alone leaves is not its own.
+const ALONE: f64 = 2.0;
 /// s at the end, in 1/s of the gap, counts as left over above this.
 pub(super) const LEFT_OVER: f64 = 1e-3;
 
@@ -245,9 +247,16 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
     {
         // More damping is what samples bear least.
         let coarse = metrics.watched.and_then(|watched| watched.sampling_margin).map(|margin| margin.sigma);
+        let before = SamplingMargin::of(record.setup).map_or(0.0, |margin| margin.worst.sigma);
         let change = match coarse.filter(|sigma| *sigma > RECOMMENDED_MARGIN) {
-            Some(sigma) => format!(
+            Some(sigma) if before > RECOMMENDED_MARGIN => format!(
                 "the sampling period is too long for the gains (margin σ = {}): sample faster or lower the gains; `forwardstep check` says which",
+                about(sigma)
+            ),
+            // Whatever drives robots away makes them fast, and σ large.
+            Some(sigma) => format!(
+                "see what acts on them first; the sampling margin, {} before the run, came to {} where that led",
+                about(before),
                 about(sigma)
             ),
             None => "raise the damping, or see what acts on them".to_owned(),
@@ -266,9 +275,16 @@ fn is_late_behind_leader(report: &Report) -> bool {
     asks(Id::SignGain) && asks(Id::BoundedDelays)
 }
 
-/// How long the design takes by itself, s, where that is long beside the run.
+/// How long the design takes by itself, s, where that is long beside the run, and where by itself it would not have left much less than there is.
 fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<f64> {
-    let rate_per_s = match &prediction?.rate {
+    let prediction = prediction?;
+    if let (PredictedCourse::Found(course), Disagreement::Measured { last, .. }) =
+        (&prediction.course, metrics.disagreement)
+        && course.disagreement.last().is_some_and(|alone| last > ALONE * alone)
+    {
+        return None;
+    }
+    let rate_per_s = match &prediction.rate {
         PredictedRate::Roots { root_per_s: [rate_per_s, _], .. } | PredictedRate::Period { rate_per_s, .. } => {
             *rate_per_s
         }

@@ -6,7 +6,7 @@ use forwardstep_sim::Setup;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-use super::formula::{latex, mathml, unicode};
+use super::formula::{latex, latex_lines, mathml, unicode};
 use super::names;
 use super::text::prose;
 use crate::scenario::Scenario;
@@ -86,8 +86,10 @@ pub fn explanation_latex(setup: &Setup, explanation: &Explanation, footing: &Foo
                 match line {
                     Line::Words(words) => text += &comment(words),
                     Line::Formula(formula, place) => {
-                        text +=
-                            &format!("\\begin{{equation*}}\n  {}{}\n\\end{{equation*}}\n", latex(formula), tag(place));
+                        let lines = latex_lines(formula);
+                        let kind = if lines.len() > 1 { "multline*" } else { "equation*" };
+                        let lines = lines.join(" \\\\\n  ");
+                        text += &format!("\\begin{{{kind}}}\n  {lines}{}\n\\end{{{kind}}}\n", tag(place));
                     }
                 }
             }

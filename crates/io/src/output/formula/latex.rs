@@ -13,7 +13,7 @@ pub(crate) fn latex(formula: &Formula) -> String {
         Formula::Symbol(symbol) => letter(symbol),
         Formula::Sum(terms) => sum(terms),
         Formula::Product(factors) => {
-            factors.iter().map(latex).collect::<Vec<_>>().join("\\, ").replace("N}_i}\\, ", "N}_i} ")
+            factors.iter().map(|factor| vec![latex(factor)]).reduce(beside).unwrap_or_default().concat()
         }
         Formula::Bracket(inside) => format!("\\left[{}\\right]", latex(inside)),
         Formula::Function(name, arguments) => format!("{}\\left({}\\right)", letter(name), list(arguments, ", ")),
@@ -28,19 +28,113 @@ pub(crate) fn latex(formula: &Formula) -> String {
     }
 }
 
+/// About how many letters and signs a line of a page has room for.
+const LINE: usize = 70;
+
+/// The same in lines that a page has room for: one, or several that begin with a sign, a relation, or a factor where many fill a line.
+pub(crate) fn latex_lines(formula: &Formula) -> Vec<String> {
+    let parts = parts(formula);
+    if parts.iter().map(|part| width(part)).sum::<usize>() <= LINE {
+        return vec![latex(formula)];
+    }
+    let mut lines: Vec<String> = Vec::new();
+    let mut left = 0;
+    for part in parts {
+        let width = width(&part);
+        match lines.last_mut() {
+            Some(line) if width <= left => {
+                *line += &part;
+                left -= width;
+                continue;
+            }
+            // An empty group, beside which the sign has the room of one between two terms.
+            Some(_) => lines.push(format!("{{}}{part}")),
+            None => lines.push(part),
+        }
+        left = LINE.saturating_sub(width);
+    }
+    lines
+}
+
+/// A formula in parts before each of which a line may begin. Brackets that are broken do not grow with what they hold.
+fn parts(formula: &Formula) -> Vec<String> {
+    match formula {
+        Formula::Equal(left, right) => {
+            let right = behind(" = ", parts(right));
+            parts(left).into_iter().chain(right).collect()
+        }
+        Formula::Sum(terms) if !terms.is_empty() => {
+            let each = terms.iter().enumerate().map(|(k, (sign, term))| behind(operator(k, *sign), parts(term)));
+            each.flatten().collect()
+        }
+        Formula::Bracket(inside) => {
+            let mut inside = behind("\\bigl[", parts(inside));
+            inside.last_mut().into_iter().for_each(|last| *last += "\\bigr]");
+            inside
+        }
+        Formula::Product(factors) => factors.iter().map(parts).reduce(beside).unwrap_or_default(),
+        other => vec![latex(other)],
+    }
+}
+
+/// Parts with something in front of the first.
+fn behind(front: &str, mut parts: Vec<String>) -> Vec<String> {
+    parts.first_mut().into_iter().for_each(|first| first.insert_str(0, front));
+    parts
+}
+
+/// The parts of two factors.
+fn beside(mut left: Vec<String>, right: Vec<String>) -> Vec<String> {
+    let mut right = right.into_iter();
+    if let (Some(last), Some(first)) = (left.last_mut(), right.next()) {
+        let beside = if last.ends_with("N}_i}") { " " } else { "\\, " };
+        // Many factors take more than one line, too.
+        if width(last) + width(&first) > LINE {
+            left.push(format!("{beside}{first}"));
+        } else {
+            *last += beside;
+            *last += &first;
+        }
+    }
+    left.extend(right);
+    left
+}
+
+/// How many letters and signs are seen of what is written in LaTeX.
+fn width(text: &str) -> usize {
+    let mut letters = text.chars().peekable();
+    let mut seen = 0;
+    while let Some(letter) = letters.next() {
+        match letter {
+            '{' | '}' | '^' | '_' | ' ' | '&' => {}
+            '\\' => {
+                let word = std::iter::from_fn(|| letters.next_if(char::is_ascii_alphabetic)).count();
+                seen += usize::from(word > 0);
+            }
+            _ => seen += 1,
+        }
+    }
+    seen
+}
+
 fn list(formulas: &[Formula], between: &str) -> String {
     formulas.iter().map(latex).collect::<Vec<_>>().join(between)
 }
 
 fn sum(terms: &[(Sign, Formula)]) -> String {
-    let each = terms.iter().enumerate().map(|(k, (sign, term))| match (k, sign) {
-        (0, Sign::Plus) => latex(term),
-        (0, Sign::Minus) => format!("-{}", latex(term)),
-        (_, Sign::Plus) => format!(" + {}", latex(term)),
-        (_, Sign::Minus) => format!(" - {}", latex(term)),
-    });
+    let each = terms.iter().enumerate().map(|(k, (sign, term))| format!("{}{}", operator(k, *sign), latex(term)));
     let text: String = each.collect();
     if text.is_empty() { "0".into() } else { text }
+}
+
+/// What stands in front of the k-th term of a sum.
+fn operator(k: usize, sign: Sign) -> &'static str {
+    match (k, sign) {
+        (0, Sign::Plus) => "",
+        (0, Sign::Minus) => "-",
+        (_, Sign::Plus) => " + ",
+        (_, Sign::Minus) => " - ",
+    }
 }
 
 fn letter(symbol: &Symbol) -> String {

@@ -4,7 +4,7 @@ mod latex;
 mod mathml;
 mod unicode;
 
-pub(crate) use latex::latex;
+pub(crate) use latex::{latex, latex_lines};
 pub(crate) use mathml::mathml;
 pub(crate) use unicode::unicode;
 
@@ -108,6 +108,14 @@ mod tests {
                 if let Line::Formula(formula, _) = line {
                     assert_is_mathml(&mathml(&formula));
                     assert_is_latex(&latex(&formula));
+                    let lines = latex_lines(&formula);
+                    // Lines are those of the whole, and begin where a term does.
+                    let whole =
+                        |text: &str| text.replace("{}", "").replace("\\bigl", "\\left").replace("\\bigr", "\\right");
+                    assert_eq!(whole(&lines.concat()), latex(&formula));
+                    for line in lines.iter().skip(1) {
+                        assert!([" + ", " - ", " = ", "\\, "].iter().any(|sign| line[2..].starts_with(sign)), "{line}");
+                    }
                 }
             }
         }
