@@ -196,8 +196,7 @@ def total(x, y):
     return x if infinite(x) else y if infinite(y) else x + y
 
 def product(x, y):
-    if x == 0 or y == 0: return Fraction(0)
-    return x * y if not (infinite(x) or infinite(y)) else INF if (x > 0) == (y > 0) else -INF
+    return Fraction(0) if x == 0 or y == 0 else x * y if not (infinite(x) or infinite(y)) else INF if (x > 0) == (y > 0) else -INF
 
 def add(a, b): return span(total(a[0], b[0]), total(a[1], b[1]))
 
@@ -310,8 +309,7 @@ def function(name, a):
     at, low, high, known_ = {
         "exp": (exp_at, zero, (INF, INF), {0: one}), "log": (log_at, None, (INF, INF), {1: zero}), "sqrt": (sqrt_at, None, (INF, INF), {}),
         "tanh": (tanh_at, minus(one), one, {0: zero}), "atan": (atan_at, minus(right), right, {0: zero})}[name]
-    ends = [known_.get(x) or ((low if x < 0 else high) if infinite(x) else at(x)) for x in a]
-    return ends[0][0], ends[1][1]
+    return (ends := [known_.get(x) or ((low if x < 0 else high) if infinite(x) else at(x)) for x in a])[0][0], ends[1][1]
 
 # --- Curves through points: at rest before the first and after the last; between them pieces of degree five, so that four derivatives
 # --- are continuous at every point inside
@@ -971,13 +969,13 @@ class Scenario:
             push = table(push, "external_wrenches", "on from_s for_s by")
             begins = not_negative(push.get("from_s", 0), "from_s")
             ends = begins + positive(push["for_s"], "for_s") if "for_s" in push else INF
-            acting = [(max(begins, first), min(ends, last), trees) for first, last, trees in self.courses(push.get("by"))]
+            acting = [(max(begins, first), min(ends, last), trees, hand) for first, last, trees, hand in self.courses(push.get("by"))]
             for name in listed(push.get("on"), "on"):
                 meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
                 such(meant, f"there is no agent `{name}`")
-                for agent in meant: agent.pushes += [(last, trees) for first, last, trees in acting if first < last]
+                for agent in meant: agent.pushes += [each for each in acting if each[0] < each[1]]
 
-    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, but for those of hands.
+    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, and whether it is a hand.
     def courses(self, by):
         kind, body = choice(by, "by")
         keys = ("force_n", "torque_n_m") if kind == "wrench" else ("target", "target_rad", "target_m")
@@ -988,7 +986,7 @@ class Scenario:
             times, hand = [Fraction(0), INF], kind.startswith("virtual_spring")
             if form == "rows": times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")]
             if form == "csv": times = [decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
-            yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" and not hand else []
+            yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" else [], hand
 
     def used(self): return [edge for graph in self.graphs for edge in graph]
 
@@ -1352,8 +1350,8 @@ def outstretched(scenario, agent):
     (at, found), axes = translations(scenario, agent), agent.gains["end_effector"].get("coordinates", "xyz")
     parts = [function("sqrt", square(found[k:k + 3])) for k in range(0, len(found), 3)]
     most = functools.reduce(add, parts)
-    # The distance along two axes may be smaller.
-    least = tuple(max(2 * part[k] - most[1 - k] for part in parts) if len(axes) == 3 else Fraction(-1) for k in (0, 1))
+    # The distance along two axes may be smaller, and what is reached there is another.
+    least = decided(len(axes) == 3, "reach along two axes is not known", [max(2 * x[k] - most[1 - k] for x in parts) for k in (0, 1)])
     return [at["xyz".index(axis)] for axis in axes], tuple(x * abs(x) for x in least), multiply(most, most)
 
 # q at the start, where the text has it as numbers: one list for each of those that share a table, or one for all.
@@ -1501,12 +1499,13 @@ STATES = [f"x{k}" for k in range(1, 256)] + [f"{d}x" for d in RATES] + [f"{d}x{k
 
 # With equal moments of inertia ΔωᵀM S(Δω) ω_d vanishes for whatever target.
 def rests(agent):
-    rows = matrix(agent.body["inertia_kg_m2"], 3, "inertia_kg_m2")
-    return still(agent) or rows == matrix(rows[0][0], 3, "inertia_kg_m2")
+    return still(agent) or (rows := matrix(agent.body["inertia_kg_m2"], 3, "inertia_kg_m2")) == matrix(rows[0][0], 3, "inertia_kg_m2")
 
+# Delays that are one number, however they are written.
 def all_constant(scenario):
     # The last graph recurs, whatever the order.
-    same = lambda kind, body: kind == "constant_s" or kind == "piecewise_constant" and len({*body["values_s"]}) == 1
+    ends = lambda of: of.get("values_s") or of.get("value_s") or (of.get("min_s", 0), of.get("max_s", 0) + of.get("amplitude_s", 0))
+    same = lambda kind, of: kind == "constant_s" or kind not in ("formula_s", "packets", "log", "hold_log") and len({*ends(of)}) == 1
     return scenario.fixed(scenario.recurring()) and all(not isinstance(e.weight, str) and same(*e.delay[:2]) for e in scenario.graphs[-1])
 
 # What follows from the text alone, by (id, kind): from the scenario, and the agents that the claim names.
@@ -1710,10 +1709,12 @@ def left_of(bound, scenario, agents):
     of = [agent.roots for agent in agents] + ([roots_of(scenario.body)] if scenario.reference == "leader" else [])
     return of and all(of) and 0 < bound <= min(map(min, of))[0]
 
-# Whether all pushes have ended, or come to zero by their formulas and stay there.
+# Whether all pushes have ended, or come to zero by their formulas and stay there, and had bounded values until then. A hand holds at zero.
 def ended(scenario, t):
-    gone = lambda trees: trees and t >= 0 and all(enclose(tree, (t, INF)) == (0, 0) for tree in trees)
-    return all(end <= t or gone(trees) for agent in scenario.agents for end, trees in agent.pushes)
+    gone = lambda trees, hand: trees and not hand and t >= 0 and all(enclose(tree, (t, INF)) == (0, 0) for tree in trees)
+    kept_ = lambda trees, until: decided(all(finite(tree, [until]) for tree in trees), "a push may be unbounded", True)
+    return all((end <= t or gone(trees, hand)) and kept_(trees, (first, max(first, min(end, t))))
+               for agent in scenario.agents for first, end, trees, hand in agent.pushes)
 
 # Numbers of the text, or bounds of such. Agents that agree need real roots; those that follow need roots to the left of the axis.
 NUMBERS = {

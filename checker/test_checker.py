@@ -1156,11 +1156,11 @@ class FalseProofs(unittest.TestCase):
         far = [("at_m = [0, 0, 0.15]", "at_m = [0, 3, 0.15]"), ("kinematic_start.given = [0, 0, 0.1]", "kinematic_start.given = [0, 3, 0.1]")]
         self.rejected(name, each, "leaves (3.2", lambda entry: None, *far)
         self.accepted(name, each, lambda entry: entry.update(answer="violated", proof={"kind": "out-of-reach", "t_s": "0"}), *far)
-        # Along two axes nothing is too near.
+        # What is reached along two axes is another.
         scenario = checker.Scenario(place_of(name).read_text(), SCENARIOS)
         agent = scenario.agents[0]
         agent.gains["end_effector"]["coordinates"] = "xy"
-        self.assertEqual(checker.outstretched(scenario, agent)[1], (-1, -1))
+        self.assertRaises(checker.Undecided, checker.outstretched, scenario, agent)
 
     def test_numbers_are_those_that_run_and_files_may_begin_with_a_mark(self):
         self.assertEqual(checker.exact(2**53 + 1, "x"), 2**53)
@@ -1169,6 +1169,43 @@ class FalseProofs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "own.csv").write_bytes(b"\xef\xbb\xbffrom,to")
             self.assertEqual(checker.read(Path(folder) / "own.csv")[1], "from,to")
+
+    def test_waves_of_one_angle_add_up_as_vectors_whatever_they_are_multiplied_with(self):
+        for text, most in (("sin(t) - cos(t)", 2**0.5), ("3*sin(t) + 4*cos(t)", 5), ("sin(t)*t/(1 + t) - cos(t)", 2**0.5),
+                           ("cos(t)*tanh(t) - sin(t)*(1 + 1/t)", 5**0.5), ("sin(t)*sin(t) + 2*cos(t)*cos(t)", 5**0.5)):
+            low, high = checker.enclose(checker.formula(text), checker.LATE)
+            self.assertTrue(most - 1e-9 < high < most + 1e-3 and -most - 1e-3 < low <= 1e-9, (text, float(low), float(high)))
+        # What grows and is taken away again goes nowhere, and nowhere is not beyond every bound.
+        self.assertFalse(checker.endless(checker.formula("t*sin(t) - t*sin(t)")))
+        self.assertTrue(checker.endless(checker.formula("t*(2 + sin(t))")) and checker.endless(checker.formula("-t")))
+
+    def test_a_slope_of_one_sign_leaves_what_is_between_the_ends(self):
+        of = lambda text, low, high: checker.straight(checker.formula(text), (checker.Fraction(low), checker.Fraction(high)))  # noqa: E731
+        self.assertEqual((of("t^2 - t", 1, 2), of("t - t^2", 1, 2)), ((0, 2), (-2, 0)))
+        low, high = of("t^2 - t", 0, 1)
+        self.assertTrue(low <= checker.Fraction(-1, 4) and high >= 0)
+
+    def test_a_push_has_a_bounded_value_until_it_ends(self):
+        name, each, old = "gusts", "pushes-end", '"2 + sin(3*t)"'
+        self.accepted(name, each)
+        for force, outcome in (("1/(t - 9)", checker.ACCEPTED), ("1/(t - 12)", checker.UNCHECKED), ("1/(t - 16)", checker.UNCHECKED),
+                               ("log(12 - t)", checker.UNCHECKED), ("1/(17 - t)", checker.ACCEPTED)):
+            judged, found = self.judged(name, each, lambda entry: None, (old, f'"{force}"'))
+            self.assertEqual([outcome_ for outcome_, _ in judged], [outcome], (force, found))
+        # One that has come to zero before it begins does nothing.
+        late = lambda entry: entry["proof"].update(value="20.3")  # noqa: E731
+        self.accepted(name, each, late, (f"[{old}, 1, 0]", '["max(0, 8 - t)", 0, 0]'), ("for_s = 6\n", ""))
+
+    def test_delays_are_constant_however_they_are_written(self):
+        name, each, constant = "first-order", "common-first-root", "delay.constant_s = 0.3"
+        kind = lambda entry: entry.update(proof={"kind": "constant"})  # noqa: E731
+        for delay in ("saw_tooth = { min_s = 0.3, max_s = 0.3, period_s = 1 }", "sinusoid = { mean_s = 0.3, period_s = 1 }",
+                      "random_hold = { hold_s = [1, 2], value_s = [0.3, 0.3], seed = 1 }",
+                      "piecewise_constant = { times_s = [0, 1], values_s = [0.3, 0.3] }"):
+            self.accepted(name, each, kind, (constant, f"delay.{delay}"))
+        for delay in ("saw_tooth = { min_s = 0.2, max_s = 0.3, period_s = 1 }", "sinusoid = { mean_s = 0.3, amplitude_s = 0.1, period_s = 1 }",
+                      "random_hold = { hold_s = [1, 2], value_s = [0.2, 0.3], seed = 1 }", 'formula_s = "0.3 + 0.1*sin(t)"', "packets = { period_s = 1 }"):
+            self.rejected(name, each, "is not so by the text", kind, (constant, f"delay.{delay}"))
 
     def test_gains_that_grow_stay_positive_definite(self):
         self.accepted("swarm-tracking", "swarm-coupling", lambda entry: None, ("coupling = 12", "coupling = 13"))
@@ -1215,9 +1252,9 @@ class FalseProofs(unittest.TestCase):
         robot = scenario.text_of("ur5e.urdf")
         placed = '<child link="shoulder_link"/><origin xyz="1 2 3" rpy="0 0 1"/>'
         scenario.text_of = lambda _: robot.replace('<child link="shoulder_link"/>', placed)
-        agent.gains["end_effector"]["coordinates"] = ["z", "x"]
+        agent.gains["end_effector"]["coordinates"] = ["z", "x", "y"]
         base, _, longer = checker.outstretched(scenario, agent)
-        self.assertEqual([float(low) for low, _ in base], [3, 1])
+        self.assertEqual([float(low) for low, _ in base], [3, 1, 2])
         self.assertAlmostEqual(float(longer[0]), float(most[0]), 12)
         # With its first joint locked as well it starts at the second: turned by that joint and by the place of the first.
         agent.body["locked"]["shoulder_pan_joint"] = checker.Fraction(1, 2)
@@ -1751,8 +1788,8 @@ class FalseProofs(unittest.TestCase):
     def test_pushes_by_formulas(self):
         pushed = ("[network]", '[[external_wrenches]]\non = ["arm-1"]\nby.torque = ["max(0, 1 - t)", 0]\n[network]')
         scenario = checker.Scenario(place_of("theorem-2").read_text().replace(*pushed), Path("."))
-        (end, trees), (both, _) = scenario.agents[0].pushes[0], (checker.FOR_EVER, 0)
-        self.assertEqual((end, len(trees)), (checker.INF, 2))
+        (begin, end, trees, hand), (both, _) = scenario.agents[0].pushes[0], (checker.FOR_EVER, 0)
+        self.assertEqual((begin, end, len(trees), hand), (0, checker.INF, 2, False))
         one = checker.Fraction(1)
         self.assertTrue(all(checker.enclose(tree, (one, checker.INF)) == (0, 0) for tree in trees))
         self.assertNotEqual(checker.enclose(trees[0], (one * 9 / 10, checker.INF)), (0, 0))

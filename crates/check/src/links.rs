@@ -103,7 +103,10 @@ pub(crate) fn is_late(setup: &Setup) -> bool {
 }
 
 pub(crate) fn no_delay(setup: &Setup) -> Hypothesis {
-    let bound_s = delays(setup).map(Delay::max_s).fold(0.0, f64::max);
+    // What a formula does after the run counts.
+    let bound_s = |known: Known| if known.unknown.is_some() { 0.0 } else { known.bound_s };
+    let later_s = known_each(setup).map(bound_s).fold(0.0, f64::max);
+    let bound_s = delays(setup).map(Delay::max_s).fold(later_s, f64::max);
     let evidence = if bound_s > 0.0 {
         LinkEvidence::Late { bound_s }
     } else if delays(setup).all(Delay::is_constant) {

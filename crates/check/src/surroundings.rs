@@ -35,6 +35,7 @@ fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
         torques_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && is_lagrangian(agent)),
         others_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && !is_lagrangian(agent)),
         hands_for_ever: pushed(|_, push| endless(push) && push.is_hand()),
+        unbounded: pushed(|_, push| !endless(push) && !is_bounded(push)),
         last_end_s: pushes.map(ends_s).fold(0.0, f64::max),
     };
     Some(Hypothesis::new(Id::PushesEnd, evidence))
@@ -48,6 +49,18 @@ pub(crate) fn acts(push: &Push) -> bool {
 
 fn endless(push: &Push) -> bool {
     ends_s(push) == f64::INFINITY
+}
+
+/// Whether it is shown to have a bounded value from when it begins until it ends, which may be after the run: only then it leaves V finite.
+fn is_bounded(push: &Push) -> bool {
+    let ([begins_s, _], ends_s) = (push.span_s(), ends_s(push));
+    match push.course() {
+        Course::Each(functions) => functions.iter().all(|function| match function {
+            Function::Constant(_) => true,
+            Function::Formula(formula) => formula.is_bounded(begins_s, ends_s),
+        }),
+        Course::Table(_) => true,
+    }
 }
 
 /// Doublings of a second after which formulas are looked at.

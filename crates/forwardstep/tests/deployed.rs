@@ -104,6 +104,24 @@ fn checked(folder: &TempDir, scenario: &str) -> Vec<Value> {
     document["practical"]["verdicts"].as_array().unwrap().clone()
 }
 
+/// Every rate makes these run away within some samples, sixteen times as fast as well; in continuous time they agree.
+#[test]
+fn regress_what_runs_away_at_sixteen_times_the_rate_as_well_is_not_called_adequate() {
+    let folder = folder();
+    for sample_hz in [18.5, 37.0, 74.0] {
+        let scenario = format!(
+            "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"m\"\ncount = 4\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n\
+             start.position_m = [[0.0], [-1.7], [3.4], [-5.1]]\n[reference.consensus]\nroots_per_s = [3.94]\n\
+             exchange = \"position_velocity\"\n[law.adaptive]\ndamping.gain = 42.7\nadaptation_gain = 62.92\n\
+             estimate_start.scaled = 1.1\n[network]\nweight = 6.28\nedges.complete = {{}}\n[control]\nsample_hz = {sample_hz}\n"
+        );
+        let verdicts = checked(&folder, &scenario);
+        let whole = verdicts.iter().find(|verdict| verdict["id"] == "whole-loop").unwrap();
+        assert_eq!(whole["answer"], "inadequate", "{sample_hz} Hz: {whole}");
+        forwardstep(&folder, &["run", "loop.toml", "--out", "run", "--force"]).code(3);
+    }
+}
+
 fn summary_of_run(folder: &TempDir) -> Value {
     forwardstep(folder, &["run", "loop.toml", "--out", "run", "--force"]);
     serde_json::from_str(&fs::read_to_string(folder.path().join("run/summary.json")).unwrap()).unwrap()

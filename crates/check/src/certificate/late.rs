@@ -109,6 +109,12 @@ impl Lates {
     /// The same by the sum of `terms`, of which quotients, exponentials that fall, and roots make more than their ends tell.
     fn multiplied_out(&self, part: Late, terms: Option<Vec<Damped>>) -> Late {
         let Some(terms) = terms.filter(|terms| part.ratio.is_none() && terms.len() <= MOST_TERMS) else { return part };
+        // Of what is only bounded a sum tells no more than its ends.
+        let plain =
+            |term: &Damped| term.wave.is_none() && term.over.is_none() && term.root.is_none() && term.power.is_none();
+        if terms.iter().all(plain) {
+            return Late { terms, ..part };
+        }
         let sum = self.total(&terms);
         let within = both(part.within, sum);
         Late { within, rest: within, terms, ..part }

@@ -132,11 +132,13 @@ fn drive_below(path: &Path, drive: &[f64], most: f64) -> Option<Enclosure> {
     found(&course.stretches(), weighted, stays)
 }
 
-/// By how much a bound may exceed what is reached, as a part: tried in this order.
+/// By how much a bound may exceed what is reached, as a part: tried in this order; and of formulas with so many steps alone, since the derivatives
+/// of long ones are longer by far.
 const AIMS: [f64; 3] = [1.001, 1.01, 1.1];
+const MOST_STEPS: usize = 40;
 
-/// A bound of what drives the leader away, for ever; infinite where nothing could be shown. What swings and settles, as tanh t sin t, is
-/// bounded more closely by the rules that a checker has, which take sines and cosines of one angle together.
+/// A bound of what drives the leader away, for ever; infinite where nothing could be shown. Where that is not below γ, what swings and settles, as
+/// tanh t sin t, is bounded more closely by the rules that a checker has, which take sines and cosines of one angle together.
 pub(crate) fn drive_bound(following: &Following) -> f64 {
     let drive = following.drive();
     let closer = |path: &Path, known: f64| {
@@ -147,9 +149,11 @@ pub(crate) fn drive_bound(following: &Following) -> f64 {
         Some(low.abs().max(high).to_f64()?.next_up())
     };
     let Some(leader) = following.motion() else { return f64::INFINITY };
+    let is_short = |path: &Path| matches!(path, Path::Formula(formula) if formula.steps().len() <= MOST_STEPS);
     let bound = |path: &Path| {
         let known = path.bounds(&drive, None).size();
-        closer(path, known).unwrap_or(known)
+        let is_enough = known < following.gain || !is_short(path);
+        if is_enough { known } else { closer(path, known).unwrap_or(known) }
     };
     leader.trajectory.paths().iter().map(bound).fold(0.0, f64::max)
 }

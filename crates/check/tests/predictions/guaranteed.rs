@@ -307,6 +307,22 @@ fn what_repeats_leaves_as_much_again() {
     assert!(settled_s >= found.settled_s.unwrap() && settled_s < 5.0 * found.settled_s.unwrap(), "{settled_s}");
 }
 
+/// The time that is said may be long after the run, and until then the weight is what it is.
+#[test]
+fn regress_the_closed_form_counts_with_what_weights_do_after_the_run() {
+    let mut setup = pair(0.5, 3.0);
+    setup.network.schedule.graphs[0][0].weight = Weight::Formula(0);
+    let mut settled = |after: f64| {
+        // From 1 to 1 − `after` between 7 s and 8 s; the run ends at 6 s.
+        let falls = (Expression::variable(0) - 7.0).larger(0.0).smaller(1.0) * -after + 1.0;
+        setup.network.weights = vec![BoundedFormula::new(falls, setup.time.end_s)];
+        guaranteed_rate(&setup, WORK).unwrap().class.map(|class| class.log10_settled_s)
+    };
+    let [stays, less, gone] = [0.0, 0.99, 1.0].map(&mut settled);
+    // The smaller of 1 and ½, and 0.01: at least fifty times as long.
+    assert!(less.unwrap() > stays.unwrap() + 50.0_f64.log10() - 0.01 && gone.is_none(), "{stays:?} {less:?} {gone:?}");
+}
+
 #[test]
 fn the_closed_form_for_any_delays_is_what_its_derivation_says() {
     // D = 3, one hop: T + 1/3 + 1/3 s, then 1/3 s and T; g = 1 for κ = 3, and an edge of weight 1/2 for 1/3 s.

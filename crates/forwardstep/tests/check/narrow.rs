@@ -126,6 +126,41 @@ fn regress_a_push_that_is_zero_from_some_time_on_ends() {
     }
 }
 
+/// The run ends at 10 s, the push at 60 s.
+#[test]
+fn regress_a_push_that_has_a_pole_after_the_run_does_not_just_end() {
+    let pushed = |force: &str| {
+        masses(&format!("[[external_wrenches]]\non = [\"m-1\"]\nfrom_s = 5\nfor_s = 55\nby.force_n = [\"{force}\"]\n"))
+    };
+    for ends in ["2 + sin(3*t)", "1/(t - 61)", "1/(t + 1)", "log(61 - t)"] {
+        assert_eq!(answer(&pushed(ends), "pushes-end"), "holds", "{ends}");
+    }
+    for unbounded in ["1/(t - 50)", "1/(t - 60)", "1/(t - 50)^2", "log(45 - t)", "exp(1/(t - 50))"] {
+        assert_eq!(answer(&pushed(unbounded), "pushes-end"), "not shown", "{unbounded}");
+    }
+    let spring = masses(
+        "[[external_wrenches]]\non = [\"m-1\"]\nfor_s = 60\nby.virtual_spring_on_axes = { stiffness = 10, target_m = [\"1/(t - 50)\"] }\n",
+    );
+    assert_eq!(answer(&spring, "pushes-end"), "not shown");
+}
+
+#[test]
+fn regress_a_delay_that_begins_after_the_run_is_one() {
+    let led = |delay: &str| {
+        let text =
+            masses(&format!("delay.formula_s = \"{delay}\"\n")).replace("[\"m-2\", \"m-1\"]", "[\"leader\", \"m-1\"]");
+        let (from, to) = (text.find("[reference").unwrap(), text.find("[law").unwrap());
+        let leader = "[leader]\nmotion.formulas = [\"sin(t)\"]\n[reference.leader]\ndesign = \"differentiable\"\nroots_per_s = [1, 1]\ngain = 3\n";
+        format!("{}{leader}{}", &text[..from], &text[to..])
+    };
+    for late in ["0.3*max(0, min(1, t - 50))", "max(0, t - 50)*exp(-t)"] {
+        assert_ne!(answer(&led(late), "no-delay"), "holds", "{late}");
+    }
+    for prompt in ["0", "0*t", "min(0, t)"] {
+        assert_eq!(answer(&led(prompt), "no-delay"), "holds", "{prompt}");
+    }
+}
+
 #[test]
 fn regress_a_quaternion_that_grows_is_no_attitude_that_does() {
     let craft = |target: &str| {

@@ -256,9 +256,14 @@ impl Delay {
         self.known.within_s[0]
     }
 
-    /// Whether T is known not to change with time.
+    /// Whether T is known not to change with time, after the run either.
     pub fn is_constant(&self) -> bool {
-        self.min_s() == self.max_s() && !self.known.holds_packets && self.known.basis != Basis::Declared
+        let stays = match self.known.basis {
+            Basis::Rule | Basis::Numbers => true,
+            Basis::Enclosure => self.known.unknown.is_none() && self.known.bound_s == self.max_s(),
+            Basis::Declared => false,
+        };
+        stays && self.min_s() == self.max_s() && !self.known.holds_packets
     }
 
     /// Appends every t > `sent_s` at which something sent at `sent_s` is heard: the solutions of t − T(t) = `sent_s`.

@@ -22,6 +22,8 @@ pub enum LoopEvidence {
         others_for_ever: Vec<Named>,
         /// Whom a hand never lets go.
         hands_for_ever: Vec<Named>,
+        /// Whom something acts on that ends, and is not shown to have a bounded value until then.
+        unbounded: Vec<Named>,
         /// When the last push ends, s; infinite where one does not.
         last_end_s: f64,
     },
@@ -77,8 +79,11 @@ impl LoopEvidence {
         let unless = |spoiled: bool| if spoiled { Answer::NotCovered } else { Answer::Holds };
         match self {
             LoopEvidence::Gains { .. } => Answer::Holds,
-            LoopEvidence::Pushes { torques_for_ever, others_for_ever, hands_for_ever, .. } => {
-                unless([torques_for_ever, others_for_ever, hands_for_ever].iter().any(|agents| !agents.is_empty()))
+            LoopEvidence::Pushes { torques_for_ever, others_for_ever, hands_for_ever, unbounded, .. } => {
+                match unless([torques_for_ever, others_for_ever, hands_for_ever].iter().any(|all| !all.is_empty())) {
+                    Answer::Holds if !unbounded.is_empty() => Answer::NotShown,
+                    answer => answer,
+                }
             }
             LoopEvidence::Applied { limited, enforced } => unless(!limited.is_empty() || !enforced.is_empty()),
             LoopEvidence::Sampling { .. } => Answer::NotCovered,

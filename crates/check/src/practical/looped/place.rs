@@ -13,7 +13,7 @@ use crate::kinds::is_lagrangian;
 /// How much faster what is compared with is sampled.
 pub(super) const FASTER: u32 = 16;
 /// How much faster yet, while a mode grows in it too: it is no ideal loop until that changes no more, by this part.
-const STILL_FASTER: [u32; 4] = [64, 256, 1024, 4096];
+pub(super) const STILL_FASTER: [u32; 4] = [64, 256, 1024, 4096];
 const SETTLED: f64 = 0.1;
 /// How many periods pass for that at most, times numbers of state: what takes more is taken as it is.
 const MOST_WORK: f64 = 6e5;

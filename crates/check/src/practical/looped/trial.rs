@@ -5,7 +5,7 @@
 use forwardstep_sim::recording::{Ending, Outcome, Signal};
 use forwardstep_sim::{RecordAt, Setup, TimeSpan};
 
-use super::place::{FASTER, ideal};
+use super::place::{FASTER, STILL_FASTER, ideal};
 use crate::prediction::trial;
 
 /// Periods that are tried at most.
@@ -36,9 +36,12 @@ impl Trial {
         let End::Lost { t_s } = tried(setup, end_s, WORK)? else {
             return Some(Trial { lost_s: None, lasted: end_s == setup.time.end_s });
         };
-        // What breaks down in continuous time may do so a little later.
-        let ideal = tried(&ideal(setup, FASTER)?, until(LONGER * t_s), f64::from(FASTER) * WORK)?;
-        Some(Trial { lost_s: (ideal == End::Lasts).then_some(t_s), lasted: false })
+        // What breaks down in continuous time may do so a little later. What is lost with samples that are faster may last with some that are faster
+        // still: the loops that sampling spoils soonest are those that need the fastest.
+        let ideal = |faster: u32| tried(&ideal(setup, faster)?, until(LONGER * t_s), f64::from(FASTER) * WORK);
+        let first = ideal(FASTER)?;
+        let lasts = first == End::Lasts || STILL_FASTER.into_iter().map_while(ideal).any(|end| end == End::Lasts);
+        Some(Trial { lost_s: lasts.then_some(t_s), lasted: false })
     }
 }
 

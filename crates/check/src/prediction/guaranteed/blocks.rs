@@ -1,6 +1,7 @@
 //! How much of the spread is left when, for certain: the operator over blocks of time, each begun anew where the one before it no longer
 //! gains.
 
+use forwardstep_core::expression::Interval;
 use forwardstep_sim::delay::{Basis, Delay, HoldLog, RandomHold};
 use forwardstep_sim::schedule::{Extent, Segment};
 
@@ -57,13 +58,14 @@ impl<'a> Blocks<'a> {
     /// of the run, and lose more.
     pub(super) fn of(network: &'a Network, repeats: Option<Repeats>, work: f64) -> [Self; 2] {
         let (end_s, n) = (network.ideal.time.end_s, network.components() as f64);
+        let on_run = Interval { low: 0.0, high: end_s };
         let graphs = &network.ideal.network.schedule.graphs;
         let edges = graphs.iter().map(Vec::len).max().unwrap_or(0) as f64 * network.sent as f64;
         let cells = work / (n * (n + 8.0 * edges));
         let sent = (network.sent * network.first.len()) as f64;
         let short = if network.has_constant_weights() { SHORT } else { SHORTER };
         let short_s =
-            (short / network.fastest_per_s()).max(network.window_s * 2.0 * sent * n / MOST_NUMBERS).min(end_s);
+            (short / network.fastest_per_s(on_run)).max(network.window_s * 2.0 * sent * n / MOST_NUMBERS).min(end_s);
         let reach_s = if repeats.is_some() { HORIZONS * end_s } else { end_s };
         [short_s, short_s.max(2.0 * end_s / cells)].map(|cell_s| Blocks { network, repeats, cell_s, reach_s, cells })
     }

@@ -37,6 +37,8 @@ pub struct ClassBound {
     pub log10_settled_s: f64,
 }
 
+/// What is left is said of times that may be after the run.
+const EVER: Interval = Interval { low: 0.0, high: f64::INFINITY };
 /// Times the horizon beyond which a time is of no practical use.
 const PRACTICAL: f64 = 100.0;
 /// What rounding does to a logarithm, generously, as a part of what it is made of.
@@ -50,7 +52,7 @@ impl ClassBound {
 
     /// None where an edge, or a graph, may be in force for no time at all.
     pub(super) fn of(network: &Network, window: &Window) -> Option<ClassBound> {
-        let (agents, fastest_per_s) = (network.first.len() as f64, network.fastest_per_s());
+        let (agents, fastest_per_s) = (network.first.len() as f64, network.fastest_per_s(EVER));
         let schedule = &network.ideal.network.schedule;
         let step_s = 1.0 / fastest_per_s;
         let dwell_s = match schedule.known().dwell {
@@ -99,10 +101,9 @@ impl ClassBound {
 }
 
 impl Network {
-    /// The least weight of any edge of any graph, 1/s.
+    /// The least weight of any edge of any graph, at any time, 1/s.
     fn least_weight(&self) -> f64 {
-        let over = Interval { low: 0.0, high: self.ideal.time.end_s };
         let edges = self.ideal.network.schedule.recurring_graphs().iter().flatten();
-        edges.map(|edge| self.weight(edge.weight, over).low).fold(f64::INFINITY, f64::min)
+        edges.map(|edge| self.weight(edge.weight, EVER).low).fold(f64::INFINITY, f64::min)
     }
 }

@@ -114,7 +114,8 @@ impl Network {
         let Interval { low, high } = match weight {
             Weight::Constant(weight) => Interval::point(weight),
             Weight::Formula(index) => self.ideal.network.weights.get(index).map_or(Interval::WHOLE, |formula| {
-                let (within, all) = (formula.formula().enclose(over), formula.within());
+                let all = if over.high.is_finite() { formula.within() } else { formula.for_ever().within };
+                let within = formula.formula().enclose(over);
                 Interval { low: within.low.max(all.low), high: within.high.min(all.high) }
             }),
         };
@@ -126,10 +127,9 @@ impl Network {
         self.ideal.network.schedule.graphs.iter().flatten().all(|edge| edge.weight.constant().is_some())
     }
 
-    /// The fastest rate of any component while any graph is in force, 1/s.
-    pub(super) fn fastest_per_s(&self) -> f64 {
+    /// The fastest rate of any component while any graph is in force, over a stretch of time, 1/s.
+    pub(super) fn fastest_per_s(&self, over: Interval) -> f64 {
         let lags = self.kappa.iter().flatten().copied().fold(0.0, f64::max);
-        let over = Interval { low: 0.0, high: self.ideal.time.end_s };
         (0..self.ideal.network.schedule.graphs.len()).fold(lags, |most, graph| {
             let degree = |inputs: &Vec<(usize, Input)>| inputs.iter().map(|(_, input)| input.rate.high).sum::<f64>();
             self.inputs(graph, over).iter().map(degree).fold(most, f64::max)
