@@ -111,12 +111,15 @@ fn a_run_that_was_killed_has_its_rows() {
         }
         let note = stderr(&forwardstep(&folder, &["report", &out, "--out", &format!("{out}-elsewhere")]).success());
         let again = stderr(&forwardstep(&folder, &["report", &out]).success());
-        assert_eq!(note.contains("Was cut off at t = "), cut_off, "{note}");
+        // On a fast machine the last one may have come to its end, and not to its tables.
+        let ended = note.contains("the run ended before its tables were written");
+        assert_eq!(note.contains("Was cut off at t = ") || ended, cut_off, "{note}");
         assert_eq!(note, again);
         let (here, elsewhere) = (recording(&path(&out)), recording(&path(&format!("{out}-elsewhere"))));
         assert_eq!(here, elsewhere);
         counts.push(first_rows(&here, &whole));
-        assert!(!cut_off || fs::read_to_string(path(&out).join("report.html")).unwrap().contains("Cut off"));
+        assert!(!cut_off || ended || fs::read_to_string(path(&out).join("report.html")).unwrap().contains("Cut off"));
+        assert!(!ended || k > 2, "{note}");
         assert!(!names(&path(&out)).contains(&"rows.journal".to_owned()));
         if k == 1 {
             fs::rename(path("moved.csv"), path("links.csv")).unwrap();
