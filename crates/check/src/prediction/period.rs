@@ -192,10 +192,11 @@ fn fitted(apart: &[DVector<f64>], mean: f64) -> Option<f64> {
         }
         right.rows_mut(size * k, size).copy_from(&-&scaled[k + order]);
     }
-    // By the normal equations, which are small: of what is noise nothing is taken.
-    let normal = (system.transpose() * &system).svd(true, true);
-    let floor = NOISE * NOISE * normal.singular_values.max();
-    let c = normal.solve(&(system.transpose() * right), floor).ok()?;
+    // By the normal equations, which are small and have the same digits on every platform, raised by what is noise.
+    let normal = system.transpose() * &system;
+    let noise = NOISE * NOISE * normal.diagonal().max();
+    let raised = normal + DMatrix::identity(order, order) * noise;
+    let c = raised.cholesky()?.solve(&(system.transpose() * right));
     let companion = DMatrix::from_fn(order, order, |row, column| match column + 1 == order {
         true => -c[row],
         false => f64::from(u8::from(row == column + 1)),
