@@ -1539,7 +1539,7 @@ def by_text(claim): require(claim.proof, TEXT[claim.id, claim.kind](claim.scenar
 RULES |= dict.fromkeys(TEXT, by_text)
 
 # The pieces of time that `range` and `cells` name: [0, ∞), or as many of a period of the formula, of the run, or until a time
-# from which on one more takes all that is left. Up to a time alone counts what nobody follows any more.
+# from which on one more takes all that is left. Up to a time alone counts what no edge follows any more.
 def pieces(node, tree, end_s=None):
     kind = node.field("range").text()
     require(node.field("range"), kind in ("for-ever", "period", "tail") or kind == "run" and end_s, "is of no known kind")

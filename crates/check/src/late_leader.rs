@@ -16,8 +16,6 @@ use forwardstep_sim::graph::{SpanningTree, spanning_tree};
 use forwardstep_sim::leader::Following;
 use forwardstep_sim::{Exchange, Setup};
 
-use crate::certificate::drive_bound;
-
 /// Edges that may be visited by sweeping.
 const MOST_VISITS: usize = 50_000_000;
 /// A change that is no more than this part of the largest entry ends the sweeping.
@@ -37,7 +35,7 @@ pub(crate) fn held(setup: &Setup, following: &Following) -> Option<f64> {
 }
 
 fn bound(following: &Following, rows: &[Row]) -> Option<f64> {
-    let drive = drive_bound(following);
+    let drive = following.drive_bound(None);
     let needed: Vec<f64> = rows.iter().map(|row| drive * row.weight_s).collect();
     let most = needed.iter().copied().fold(0.0, f64::max);
     if !most.is_finite() {

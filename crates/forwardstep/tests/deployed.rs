@@ -104,6 +104,23 @@ fn checked(folder: &TempDir, scenario: &str) -> Vec<Value> {
     document["practical"]["verdicts"].as_array().unwrap().clone()
 }
 
+/// Limits let the estimates run away; the design settles within some seconds, and the margin was small before the run.
+#[test]
+fn regress_a_run_that_ran_away_is_not_called_slow_nor_its_samples() {
+    let folder = folder();
+    let scenario = "format = 2\ntime.end_s = 30\n[[agents]]\nname = \"a\"\ncount = 2\nrobot.planar_arm = { mass_kg = [2.0, 1.5], length_m = [1.0, 0.8] }\n\
+                    start.position_rad = [[1.2, 0.2], [1.9, -0.2]]\n[reference.consensus]\nroots_per_s = [1.0, 2.0]\nexchange = \"position_velocity\"\n\
+                    [law.adaptive]\ndamping.gain = 8\nadaptation_gain = 10\n[control]\nsample_hz = 200\ntorque_limit = [12, 9]\n\
+                    torque_rate_limit_per_s = 100\n[network]\nedges.ring = {}\n[goal]\ndisagreement_below = 0.01\n";
+    fs::write(folder.path().join("own.toml"), scenario).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "own.toml"]).code(1));
+    assert!(
+        said.contains("limits of torque") && said.contains("see what acts on them first; the sampling margin, 0.2"),
+        "{said}"
+    );
+    assert!(!said.contains("the design is slow") && !said.contains("the sampling period is too long"), "{said}");
+}
+
 /// Every rate makes these run away within some samples, sixteen times as fast as well; in continuous time they agree.
 #[test]
 fn regress_what_runs_away_at_sixteen_times_the_rate_as_well_is_not_called_adequate() {

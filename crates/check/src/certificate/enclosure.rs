@@ -42,7 +42,7 @@ pub(super) struct Stretches {
     period_s: Option<f64>,
     /// Times from which one piece takes all that is left.
     starts_s: Vec<u32>,
-    /// From when on nobody follows it any more.
+    /// From when on no edge follows it any more.
     gone_s: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl Stretches {
 }
 
 /// The same of a formula where the ends matter: one pass in rational numbers ends at zero where rounded ends fall short of it, as
-/// 0.2 + 0.2 sin 3 t. What nobody follows any more from `gone_s` on counts until then.
+/// 0.2 + 0.2 sin 3 t. What no edge follows any more from `gone_s` on counts until then.
 pub(super) fn steady(formula: &Expression, gone_s: Option<f64>, good: impl Fn(Interval) -> bool) -> Option<Enclosure> {
     let slope = slope(formula);
     let enclose = |t: Interval| {

@@ -31,7 +31,7 @@ use num_rational::BigRational;
 
 pub use exact::decimal;
 pub(crate) use limit::refutes;
-pub(crate) use motions::{at_start, drive_bound};
+pub(crate) use motions::{at_start, closer_drive_bound};
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};
 
 pub(crate) use zeros::vanishing;

@@ -137,23 +137,22 @@ fn drive_below(path: &Path, drive: &[f64], most: f64) -> Option<Enclosure> {
 const AIMS: [f64; 3] = [1.001, 1.01, 1.1];
 const MOST_STEPS: usize = 40;
 
-/// A bound of what drives the leader away, for ever; infinite where nothing could be shown. Where that is not below γ, what swings and settles, as
-/// tanh t sin t, is bounded more closely by the rules that a checker has, which take sines and cosines of one angle together.
-pub(crate) fn drive_bound(following: &Following) -> f64 {
+/// A bound of what drives the leader away, for ever, also by the rules that a checker has; infinite where nothing could be shown. They take sines and
+/// cosines of one angle together, so that what swings and settles, as tanh t sin t, is bounded more closely than by [`Following::drive_bound`].
+pub(crate) fn closer_drive_bound(following: &Following) -> f64 {
+    let Some(leader) = following.motion() else { return f64::INFINITY };
     let drive = following.drive();
     let closer = |path: &Path, known: f64| {
         let Path::Formula(formula) = path else { return None };
         let reached = formula.combination_for_ever(&drive).reaches.size();
-        let aims = AIMS.into_iter().map(|aim| aim * reached).filter(|most| *most < known);
-        let [low, high] = aims.into_iter().find_map(|most| drive_below(path, &drive, most))?.within;
+        let mut aims = AIMS.into_iter().map(|aim| aim * reached).filter(|most| *most < known);
+        let is_short = formula.steps().len() <= MOST_STEPS;
+        let [low, high] = is_short.then(|| aims.find_map(|most| drive_below(path, &drive, most)))??.within;
         Some(low.abs().max(high).to_f64()?.next_up())
     };
-    let Some(leader) = following.motion() else { return f64::INFINITY };
-    let is_short = |path: &Path| matches!(path, Path::Formula(formula) if formula.steps().len() <= MOST_STEPS);
     let bound = |path: &Path| {
         let known = path.bounds(&drive, None).size();
-        let is_enough = known < following.gain || !is_short(path);
-        if is_enough { known } else { closer(path, known).unwrap_or(known) }
+        closer(path, known).unwrap_or(known)
     };
     leader.trajectory.paths().iter().map(bound).fold(0.0, f64::max)
 }

@@ -87,7 +87,7 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
     let square = target.squared_norm().map(|square| BoundedFormula::new(square.sqrt_of(), end_s));
     let least = square.as_ref().map_or(0.0, |norm| norm.for_ever().within.low);
     if least > 0.0 {
-        return Some(MotionEvidence::NormAbove { least, until_s: None });
+        return Some(MotionEvidence::NormAbove { least });
     }
     let fastest = |axis| {
         let speed = target.hull(axis, 1, Some(until_s));
@@ -104,11 +104,8 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
             MotionEvidence::NormFades { witness: norm.and_then(|norm| norm.seen_outside(above)) }
         }
         (Some(_), _) => MotionEvidence::NormVanishes { t_s: nearest.t_s },
-        // A curve through points.
-        (None, None) if shown > 0.0 => {
-            let until_s = if rests_s.is_some() { None } else { Some(end_s) };
-            MotionEvidence::NormAbove { least: shown, until_s }
-        }
+        // Curves through points.
+        (None, None) if shown > 0.0 && rests_s.is_some() => MotionEvidence::NormAbove { least: shown },
         (None, _) => MotionEvidence::NormSeen { t_s: nearest.t_s, norm: nearest.norm },
     })
 }

@@ -1,10 +1,11 @@
 //! The course of agreement: the disagreement over time and the value agreed upon, by simulating the reference dynamics alone.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, RecordAt, Recording, Setup, Signal, ThrustLaw,
+    Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, RecordAt, Recording, Setup, Signal, ThrustLaw, TimeSpan,
 };
 use thiserror::Error;
 
@@ -172,7 +173,7 @@ pub fn course_within(
         return Err(NoCourse::Axes);
     }
     let before = told_before(setup, &ideal);
-    let Rows { ideal, parts, are_close } = with_enough_rows(ideal);
+    let Rows { ideal, of_run, are_close } = with_enough_rows(ideal);
     let recording = completed(&ideal, before.as_deref(), &mut work, observer)?;
     let disagreement = disagreement(&recording, axes);
     let within = match before {
@@ -186,9 +187,10 @@ pub fn course_within(
     peak_torques.iter_mut().filter(|_| !are_close).for_each(|peak| peak.at_most = None);
     let (start, moved_by_s) = (StartError::of(setup), moved_by_s(setup));
     let last = recording.t_s.len().saturating_sub(1);
+    let is_of_run: Vec<bool> =
+        recording.t_s.iter().enumerate().map(|(row, t_s)| row == last || of_run.holds(row, *t_s)).collect();
     let of_run = |all: Vec<f64>| -> Vec<f64> {
-        let rows = all.into_iter().enumerate().filter(|(row, _)| row % parts == 0 || *row == last);
-        rows.map(|(_, value)| value).collect()
+        all.into_iter().zip(&is_of_run).filter(|(_, is_of_run)| **is_of_run).map(|(value, _)| value).collect()
     };
     let (t_s, disagreement) = (of_run(recording.t_s), of_run(disagreement));
     Ok(Course { disagreement, value, within, settled, peak_torques, start, moved_by_s, t_s })
@@ -201,25 +203,68 @@ const LEAST_ROWS: f64 = 1000.0;
 const CLOSE: f64 = 0.05;
 const MOST_ENTRIES: f64 = 1e6;
 
+/// A setup with rows that are close enough, as far as there is room for them.
 struct Rows {
     ideal: Setup,
-    /// Of each interval between two rows of the run.
-    parts: usize,
+    of_run: OfRun,
     are_close: bool,
 }
 
-/// The same setup with so many parts of each interval between two rows that there are enough.
+/// Which of its rows are those of the run.
+enum OfRun {
+    /// One in so many.
+    OneIn(usize),
+    /// Those at these times, which rise, s.
+    At(Arc<[f64]>),
+}
+
+impl OfRun {
+    fn holds(&self, row: usize, t_s: f64) -> bool {
+        match self {
+            OfRun::OneIn(parts) => row.is_multiple_of(*parts),
+            OfRun::At(times_s) => row == 0 || times_s.binary_search_by(|own_s| own_s.total_cmp(&t_s)).is_ok(),
+        }
+    }
+}
+
+/// The same setup with each interval between two rows cut into parts.
 fn with_enough_rows(mut ideal: Setup) -> Rows {
     let axes: usize = ideal.agents.iter().map(|agent| agent.robot.axes.len()).sum();
-    let close = ideal.time.record_every_s * fastest_reference_per_s(&ideal) / CLOSE;
-    let time = &mut ideal.time;
-    let rows = time.end_s / time.record_every_s;
-    if time.record_at != RecordAt::Intervals {
-        return Rows { ideal, parts: 1, are_close: false };
-    }
-    let parts = close.max(LEAST_ROWS / rows).min(MOST_ENTRIES / axes as f64 / rows).ceil().max(1.0);
-    time.record_every_s /= parts;
-    Rows { ideal, parts: parts as usize, are_close: close <= parts }
+    let close_s = CLOSE / fastest_reference_per_s(&ideal);
+    let TimeSpan { end_s, record_every_s, record_at } = &mut ideal.time;
+    let apart_s = close_s.min(*end_s / LEAST_ROWS).max(*end_s * axes as f64 / MOST_ENTRIES);
+    let parts = |interval_s: f64| (interval_s / apart_s).ceil().max(1.0);
+    let (of_run, found_s) = match record_at {
+        RecordAt::Intervals => {
+            let parts = parts(*record_every_s);
+            *record_every_s /= parts;
+            (OfRun::OneIn(parts as usize), *record_every_s)
+        }
+        RecordAt::Rate { hz } => {
+            let parts = parts(1.0 / *hz);
+            *hz *= parts;
+            (OfRun::OneIn(parts as usize), 1.0 / *hz)
+        }
+        RecordAt::Times(times_s) => {
+            let own: Arc<[f64]> = times_s.clone();
+            let between = |from_s: f64, to_s: f64| {
+                let parts = parts(to_s - from_s);
+                (1..=parts as usize)
+                    .map(move |k| if k as f64 == parts { to_s } else { from_s + (to_s - from_s) * k as f64 / parts })
+            };
+            let ends = own.iter().copied().chain([*end_s]).filter(|t_s| *t_s > 0.0);
+            let mut rows_s = vec![0.0];
+            for to_s in ends {
+                let from_s = rows_s[rows_s.len() - 1];
+                if to_s > from_s {
+                    rows_s.extend(between(from_s, to_s));
+                }
+            }
+            *times_s = rows_s.into();
+            (OfRun::At(own), apart_s)
+        }
+    };
+    Rows { ideal, of_run, are_close: found_s <= close_s }
 }
 
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.

@@ -175,6 +175,24 @@ fn columns_of(recording: &Recording, agent: usize, signal: Signal, axes: usize) 
     (0..axes).map(column).collect()
 }
 
+/// q, z and ż of an agent along the reference, where q̇ = z. Numbers are many, so no row has lists of its own.
+struct Motions<'a> {
+    columns: [Vec<&'a [f64]>; 3],
+    now: [Vec<f64>; 3],
+}
+
+impl Motions<'_> {
+    fn at(&mut self, row: usize) -> Option<TwoVelocity<'_, f64>> {
+        for (columns, now) in self.columns.iter().zip(&mut self.now) {
+            for (column, now) in columns.iter().zip(now) {
+                *now = *column.get(row)?;
+            }
+        }
+        let [q, z, dz] = &self.now;
+        Some(TwoVelocity { q, dq: z, z, dz })
+    }
+}
+
 fn of_agent(
     setup: &Setup,
     index: usize,
@@ -188,30 +206,21 @@ fn of_agent(
     let first = |torques: Vec<&[f64]>| torques.into_iter().map(|torque| torque.first().copied()).collect();
     let begins: Option<Vec<f64>> =
         start.and_then(|start| columns_of(start, index, Signal::Torque, axes)).and_then(first);
-    let (q, dq, ddq) = (columns(Signal::Position)?, columns(Signal::Velocity)?, columns(Signal::Reference(1))?);
+    let mut motions = Motions {
+        columns: [columns(Signal::Position)?, columns(Signal::Velocity)?, columns(Signal::Reference(1))?],
+        now: [(); 3].map(|()| vec![0.0; axes]),
+    };
     let mut peaks: Vec<PeakTorque> = (0..axes)
         .map(|axis| PeakTorque { agent: index, axis, value: 0.0, t_s: 0.0, estimate_off, at_most: None })
         .collect();
     // A run that begins elsewhere does not stay near this course while V ≤ V(0) brings it there.
     let allowance = if begins.is_some() { None } else { Allowance::of(setup, index) };
-    let mut most = allowance.as_ref().map(|_| vec![0.0_f64; axes]);
     let stride = ideal.t_s.len().div_ceil(MOST_ROWS).max(1);
     let theta = &agent.robot.theta;
     let (mut evaluator, no_error) = (model.evaluator(), vec![0.0; axes]);
-    // Numbers are many, so no row has lists of its own.
-    let [mut now_q, mut now_dq, mut now_ddq] = [(); 3].map(|()| vec![0.0; axes]);
     let mut peak_rows = vec![0; axes];
-    let put = |columns: &[&[f64]], row: usize, now: &mut [f64]| {
-        for (column, now) in columns.iter().zip(now) {
-            *now = *column.get(row)?;
-        }
-        Some(())
-    };
     for (row, t_s) in ideal.t_s.iter().enumerate() {
-        put(&q, row, &mut now_q)?;
-        put(&dq, row, &mut now_dq)?;
-        put(&ddq, row, &mut now_ddq)?;
-        let motion = TwoVelocity { q: &now_q, dq: &now_dq, z: &now_dq, dz: &now_ddq };
+        let motion = motions.at(row)?;
         let along = &evaluator.at(theta, motion, &no_error).ok()?.model;
         let begins = begins.as_ref().filter(|_| row == 0);
         for (axis, (peak, peak_row)) in peaks.iter_mut().zip(&mut peak_rows).enumerate() {
@@ -221,22 +230,19 @@ fn of_agent(
             }
         }
     }
-    // Where the torque itself is largest counts, however few the other rows are.
-    let looked = (0..ideal.t_s.len()).step_by(stride).chain(peak_rows);
-    for row in looked.filter(|_| allowance.is_some()) {
-        put(&q, row, &mut now_q)?;
-        put(&dq, row, &mut now_dq)?;
-        put(&ddq, row, &mut now_ddq)?;
-        let motion = TwoVelocity { q: &now_q, dq: &now_dq, z: &now_dq, dz: &now_ddq };
-        let along = evaluator.at(theta, motion, &no_error).ok()?.model.clone();
-        let Some(added) =
-            allowance.as_ref().and_then(|allowance| allowance.at(&model.dynamics_at(theta, motion).ok()?))
-        else {
-            most = None;
-            break;
-        };
-        for (most, (torque, added)) in most.iter_mut().flatten().zip(along.iter().zip(&added)) {
-            *most = most.max(torque.abs() + added);
+    let mut most = allowance.as_ref().map(|_| vec![0.0_f64; axes]);
+    if let Some(allowance) = &allowance {
+        // Where the torque itself is largest counts, however few the other rows are.
+        for row in (0..ideal.t_s.len()).step_by(stride).chain(peak_rows) {
+            let motion = motions.at(row)?;
+            let Some(added) = allowance.at(&model.dynamics_at(theta, motion).ok()?) else {
+                most = None;
+                break;
+            };
+            let along = &evaluator.at(theta, motion, &no_error).ok()?.model;
+            for (most, (torque, added)) in most.iter_mut().flatten().zip(along.iter().zip(&added)) {
+                *most = most.max(torque.abs() + added);
+            }
         }
     }
     for (peak, most) in peaks.iter_mut().zip(most.into_iter().flatten()) {

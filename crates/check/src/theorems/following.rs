@@ -7,7 +7,7 @@ use forwardstep_sim::{AgentSetup, Setup};
 
 use super::own_targets::how_far;
 use super::swarm;
-use crate::certificate::drive_bound;
+use crate::certificate::closer_drive_bound;
 use crate::graphs::{dwell_time, fixed_graph, leader_in_every_graph, leader_reaches_all};
 use crate::hypothesis::numbers::rounded_up;
 use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
@@ -168,7 +168,8 @@ fn gain(setup: &Setup, following: &Following) -> Hypothesis {
     let evidence = match following.motion() {
         Some(leader) => {
             let (motion, drive) = (&leader.trajectory, following.drive());
-            let for_ever = drive_bound(following);
+            let known = following.drive_bound(None);
+            let for_ever = if known < gamma { known } else { closer_drive_bound(following) };
             let exceeds = for_ever.is_nan() || for_ever >= gamma;
             FollowingEvidence::Gain {
                 gamma,
@@ -228,7 +229,7 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
     let left = if sampled || is_late(setup) {
         held(setup, following).unwrap_or(f64::INFINITY) * swing
     } else {
-        period_s * drive_bound(following) / following.alpha * swing
+        period_s * following.drive_bound(None) / following.alpha * swing
     };
     let (end_s, scale) = (setup.time.end_s, scale(setup, following));
     let (choice, rate_per_s) = (following.choice, alpha_per_s);

@@ -12,7 +12,9 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, RandomHold, SawTooth};
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
-use forwardstep_sim::{Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, Setup, Signal, Start};
+use forwardstep_sim::{
+    Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, RecordAt, Setup, Signal, Start,
+};
 
 use crate::common::kinds::{blind_mass, cascade, chain, rest_at, tracking};
 use crate::common::{arm, column, edge, masses, noise, run, setup};
@@ -275,6 +277,17 @@ fn regress_what_peaks_at_once_is_found_however_long_the_run_is() {
     for (peak, known) in long.peak_torques.iter().zip(&close.peak_torques) {
         assert!((peak.value / known.value - 1.0).abs() < 3e-4 && known.t_s < 0.2, "{peak:?} {known:?}");
         assert!(peak.at_most.unwrap() > known.value.abs() * (1.0 - 3e-4), "{peak:?} {known:?}");
+    }
+    // Whenever the run has rows.
+    for record_at in [RecordAt::Rate { hz: 2.0 }, RecordAt::Times(vec![1.0, 1.5, 3.0].into())] {
+        let mut setup = setup.clone();
+        (setup.time.end_s, setup.time.record_every_s, setup.time.record_at) = (5.0, 0.5, record_at);
+        let (found, run) = (predicted(&setup), run(&setup));
+        assert!(found.t_s.len() == run.recording.t_s.len() && found.t_s.len() == found.disagreement.len());
+        assert!(found.t_s.iter().zip(&run.recording.t_s).all(|(a, b)| (a - b).abs() < 1e-12), "{:?}", found.t_s);
+        for (peak, known) in found.peak_torques.iter().zip(&close.peak_torques) {
+            assert!((peak.value / known.value - 1.0).abs() < 3e-4 && peak.at_most.is_some(), "{peak:?} {known:?}");
+        }
     }
     // With so many agents there is no room for rows that are close: what lies between them is not bounded.
     setup.agents = (0..200).flat_map(|_| setup.agents.clone()).collect();

@@ -10,6 +10,35 @@ fn violated(text: &str, id: &str, kind: &str) {
     assert_eq!(proof(text, id)["kind"], kind, "{id}");
 }
 
+/// The third derivative of a curve jumps at its points and has no value there: the witness is another time.
+#[test]
+fn regress_a_leader_through_points_is_refuted_between_them() {
+    violated(&changed("remark-12", "times_s = [2, 6, 10", "times_s = [2, 3, 10"), "sign-gain", "instant");
+}
+
+#[test]
+fn regress_a_target_in_the_hole_that_a_long_tool_leaves_is_refuted() {
+    let longer = changed("pose-ur5e", "at_m = [0, 0, 0.15]", "at_m = [0, 3, 0.15]")
+        .replace("given = [0, 0, 0.1]", "given = [0, 3, 0.1]")
+        .replace("upper_m = [0.05, 0.05, 0.3]", "upper_m = [0.05, 3.05, 0.3]");
+    violated(&longer, "target-within-reach", "out-of-reach");
+}
+
+/// Of an attitude through points no entry keeps away from zero, and the last point comes after the run.
+#[test]
+fn regress_an_attitude_through_points_is_judged_for_all_time() {
+    let text = fs::read_to_string(super::file_of("rest-to-rest")).unwrap();
+    let (from, to) = (text.find("[agents.target.points]").unwrap(), text.find("[agents.robot").unwrap());
+    let turning = |last: &str| {
+        let positions = format!("[[1, 0, 0, 0], [0, 1, 0, 0], {last}]");
+        let points = format!("[agents.target.points]\ntimes_s = [1, 40, 80]\npositions = {positions}\n\n");
+        format!("{}{points}{}", &text[..from], &text[to..])
+    };
+    assert_eq!(judged(&turning("[0, 0, 1, 0]"), "nonzero-quaternion"), ("holds".to_owned(), "accepted".to_owned()));
+    // It comes to rest at zero after the run.
+    assert_eq!(judged(&turning("[0, 0, 0, 0]"), "nonzero-quaternion").0, "not shown");
+}
+
 fn watched(text: &str, id: &str) {
     assert_eq!(judged(text, id), ("watched during the run".to_owned(), "could not check".to_owned()), "{id}: {text}");
 }

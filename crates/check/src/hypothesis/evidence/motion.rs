@@ -20,8 +20,6 @@ pub enum MotionEvidence {
     NormAbove {
         /// By enclosures, or by looking often, and by how fast it can change between two looks.
         least: f64,
-        /// Until when, s; `None` for ever.
-        until_s: Option<f64>,
     },
     /// The norm of a quaternion comes as close to zero as one likes.
     NormFades {
@@ -63,8 +61,7 @@ impl MotionEvidence {
         match self {
             MotionEvidence::Derivatives(Bounded::ForEver)
             | MotionEvidence::EntryAway { .. }
-            | MotionEvidence::NormAbove { until_s: None, .. } => Answer::Holds,
-            MotionEvidence::NormAbove { until_s: Some(_), .. } => Answer::NotShown,
+            | MotionEvidence::NormAbove { .. } => Answer::Holds,
             MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotShown,
             MotionEvidence::OfAgent => Answer::Watched,
             MotionEvidence::Derivatives(Bounded::Unbounded { .. })
@@ -80,8 +77,7 @@ impl MotionEvidence {
             | MotionEvidence::EntryAway { .. }
             | MotionEvidence::NormFades { .. }
             | MotionEvidence::NormVanishes { .. }
-            | MotionEvidence::NormAbove { until_s: None, .. } => Rigour::Enclosed,
-            MotionEvidence::NormAbove { until_s: Some(_), .. } => Rigour::Computed,
+            | MotionEvidence::NormAbove { .. } => Rigour::Enclosed,
             MotionEvidence::NormSeen { .. } => Rigour::Sampled,
         }
     }

@@ -2,7 +2,7 @@
 
 use forwardstep_sim::formula::Witness;
 
-use super::numbers::{rounded, rounded_down, rounded_up, seconds};
+use super::numbers::{rounded, rounded_down, rounded_up};
 use super::ordinal;
 use crate::hypothesis::{Bounded, MotionEvidence};
 
@@ -17,14 +17,8 @@ pub(super) fn words(evidence: &MotionEvidence) -> String {
         MotionEvidence::EntryAway { least } => {
             format!("one of its entries is never below {} in magnitude", rounded_down(*least))
         }
-        MotionEvidence::NormAbove { least, until_s: None } => {
+        MotionEvidence::NormAbove { least } => {
             format!("its norm is never below {}", rounded_down(*least))
-        }
-        MotionEvidence::NormAbove { least, until_s: Some(until_s) } => {
-            let (least, until_s) = (rounded_down(*least), seconds(*until_s));
-            format!(
-                "its norm stays above {least} until the end of the run at {until_s} s, and for all time no bound could be shown"
-            )
         }
         MotionEvidence::NormFades { witness } => {
             let at = witness.map_or(String::new(), |Witness { t_s, value }| {

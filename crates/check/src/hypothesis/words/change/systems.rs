@@ -22,7 +22,7 @@ pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
                 .into()
         }
         MotionEvidence::OfAgent => "a leader whose motion is given before the run".into(),
-        MotionEvidence::NormAbove { until_s: Some(_), .. } | MotionEvidence::NormSeen { .. } => {
+        MotionEvidence::NormSeen { .. } => {
             "an entry that keeps its sign, so that the norm has a bound for all time".into()
         }
         MotionEvidence::NormFades { .. } | MotionEvidence::NormVanishes { .. } => {
@@ -30,7 +30,7 @@ pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
         }
         MotionEvidence::Derivatives(Bounded::ForEver)
         | MotionEvidence::EntryAway { .. }
-        | MotionEvidence::NormAbove { until_s: None, .. } => return None,
+        | MotionEvidence::NormAbove { .. } => return None,
     })
 }
 
