@@ -16,7 +16,7 @@ from checks import NO_BROWSER
 from pages import SCENARIOS
 
 LONG = "FORWARDSTEP_LONG" in os.environ
-BESIDE = [["stage.py"], ["compare.py"], ["follow.py"]]
+BESIDE = [["follow.py"], ["stage.py"], ["layout.py"], ["hands.py"], ["compare.py"]]
 BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", *SCENARIOS[::3]]]
 ALONE = [["speed.py"]] if LONG else []
 

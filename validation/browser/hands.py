@@ -1,7 +1,12 @@
-"""Checks of what readers do with a page: windows that become smaller, keys, buttons that zoom, and names that have no room."""
+#!/usr/bin/env python3
+"""Checks of what readers do with a page: windows that become smaller, keys, buttons that zoom, and names that have no room.
+
+    validation/browser/hands.py target/release/forwardstep
+"""
 
 import re
 
+import checks
 from checks import FRAMES, becomes, drawn, expect, settled, value, waited
 from known import PACKETS, masses
 
@@ -138,7 +143,8 @@ def still(browser, page, name):
     expect(len(set(highs[len(times):])) == 1, f"{name}: the graph is {sorted(set(highs))} px high")
 
 
-def all_of(browser, folder):
+def check(browser, folder):
+    browser.screen(1400, 900)
     page = folder.run("six-arms")
     smaller(browser, page, "six-arms")
     browser.open(page)
@@ -154,3 +160,7 @@ def all_of(browser, folder):
     expect("arrows: thrust" in said, f"formation: nothing is said of thrust in {said}")
     complaints = browser.complaints()
     expect(not complaints, f"by hand: the console says {complaints[:2]}")
+
+
+if __name__ == "__main__":
+    checks.main(check)

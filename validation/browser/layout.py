@@ -1,8 +1,13 @@
-"""Checks of how a page is laid out, printed, saved and gone through by keys."""
+#!/usr/bin/env python3
+"""Checks of how a page is laid out, printed, saved and gone through by keys.
+
+    validation/browser/layout.py target/release/forwardstep
+"""
 
 import csv
 import io
 
+import checks
 from checks import FRAMES, drawn, expect, value, waited
 from known import masses
 
@@ -205,7 +210,8 @@ def units(browser, name, card, title, unit):
     expect(found.startswith(title) and found.endswith(f" {unit}"), f"{name}: {found} is not {title} in {unit}")
 
 
-def all_of(browser, folder):
+def check(browser, folder):
+    browser.screen(1400, 900)
     long = folder / "long-title.toml"
     long.write_text(masses(folder, "long-title", RING).read_text().replace('"Masses"', f'"{"Long words of a title " * 8}"').replace('"point"', '"a-point-with-a-very-long-name"'))
     ten = folder / "ten-arms.toml"
@@ -237,3 +243,7 @@ def all_of(browser, folder):
     units(browser, "gusts", "external", "External forces", "N")
     complaints = browser.complaints()
     expect(not complaints, f"layout: the console says {complaints[:2]}")
+
+
+if __name__ == "__main__":
+    checks.main(check)

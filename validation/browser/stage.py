@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds what pages draw beside what runs recorded: tips, shapes, packets; then what is known and what is not, layout, what readers do, and films.
+"""Holds what pages draw beside what runs recorded: tips, shapes, packets; then what is known and what is not, and films.
 
     validation/browser/stage.py target/release/forwardstep
 """
@@ -12,9 +12,7 @@ import struct
 import tarfile
 
 import checks
-import hands
 import known
-import layout
 from checks import TOLERANCE_M, done, expect, quiet, settled, value, waited
 from pages import drawings
 
@@ -178,8 +176,6 @@ def check(browser, folder):
     far_away(browser, folder)
     many_names(browser, folder)
     known.all_of(browser, folder)
-    layout.all_of(browser, folder)
-    hands.all_of(browser, folder)
     page = folder.run("from-a-log")
     browser.open(page)
     flights(browser, "from-a-log", page)

@@ -121,6 +121,11 @@ fn judged(scenario: &str, id: &str) -> (String, String) {
 
 /// The same, of what can be read, and asks for the hypothesis.
 fn judged_if_read(scenario: &str, id: &str) -> Option<(String, String)> {
+    found_of(&entries_if_read(scenario)?, id)
+}
+
+/// What the checker makes of each proof, of what can be read. No claim is rejected.
+fn entries_if_read(scenario: &str) -> Option<Vec<Value>> {
     let folder = folder();
     let file = folder.path().join("own.toml");
     fs::write(&file, scenario).unwrap();
@@ -129,6 +134,11 @@ fn judged_if_read(scenario: &str, id: &str) -> Option<(String, String)> {
     let entries = found["entries"].as_array().unwrap();
     let rejected = entries.iter().find(|entry| entry["outcome"] == "rejected");
     assert!(rejected.is_none(), "{scenario}: {rejected:?}");
+    Some(entries.clone())
+}
+
+/// The answer about a hypothesis, and what the checker makes of its proof.
+fn found_of(entries: &[Value], id: &str) -> Option<(String, String)> {
     let entry = entries.iter().find(|entry| entry["id"] == id)?;
     let text = |key: &str| entry[key].as_str().unwrap().to_owned();
     Some((text("answer"), text("outcome")))

@@ -3,6 +3,8 @@
 
 mod folders;
 mod forged_tables;
+mod formulas;
+mod journal;
 mod metrics;
 mod names;
 mod output;
@@ -11,6 +13,7 @@ mod run_folders;
 mod sampled;
 mod scenario;
 mod seeds;
+mod shapes;
 mod state;
 mod strange_files;
 mod support;

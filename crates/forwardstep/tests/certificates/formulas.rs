@@ -4,11 +4,20 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::{RING, judged, masses, outcome_of_pair};
+use super::{RING, entries_if_read, found_of, judged, masses, outcome_of_pair};
 use crate::support::{folder, forwardstep, is_long, some, stdout};
 
 fn accepted(scenario: &str, id: &str, answer: &str) {
     assert_eq!(judged(scenario, id), (answer.to_owned(), "accepted".to_owned()), "{id}: {scenario}");
+}
+
+/// The same of several hypotheses that hold.
+fn all_hold(scenario: &str, ids: &[&str]) {
+    let entries = entries_if_read(scenario).unwrap();
+    for id in ids {
+        let expected = Some(("holds".to_owned(), "accepted".to_owned()));
+        assert_eq!(found_of(&entries, id), expected, "{id}: {scenario}");
+    }
 }
 
 fn weighed(weight: &str) -> String {
@@ -76,8 +85,7 @@ fn delays_that_begin_at_zero_are_read_and_certified() {
 fn kinks_that_are_none_and_waves_of_waves_are_certified() {
     for motion in ["min(2, 1/(1 + t))", "max(sin(t), 2 + cos(t))", "abs(2 + sin(t))", "sin(sin(t))^2"] {
         let text = led(&format!("formulas = [\"{motion}\"]"), "9");
-        accepted(&text, "bounded-leader", "holds");
-        accepted(&text, "sign-gain", "holds");
+        all_hold(&text, &["bounded-leader", "sign-gain"]);
     }
     for delay in
         ["0.2 + 0.1*sin(log(2 + abs(t^2)))", "0.2 + 0.1*sin(min(sqrt(1 + t^2), 1.2))", "0.2 + 0.1*abs(sin(sin(t)))"]
@@ -169,8 +177,7 @@ fn leaders_delays_and_weights_with_roots_are_certified_and_refuted() {
         3,
     ) {
         let text = led(&format!("formulas = [\"{motion}\"]"), gain);
-        accepted(&text, "bounded-leader", "holds");
-        accepted(&text, "sign-gain", "holds");
+        all_hold(&text, &["bounded-leader", "sign-gain"]);
     }
     for weight in ["sqrt(2 + (t - 3)^2)/(1 + t)", "1 + t/sqrt(1 + t^2)", "1 + sqrt(1 + t)/(2 + t)"] {
         accepted(&weighed(weight), "bounded-weights", "holds");
@@ -211,8 +218,7 @@ fn leaders_are_certified_up_to_the_gain_that_they_need() {
         ("sin(t)/(1 + 1/(1 + t))", "1.43"),
     ] {
         let text = led(&format!("formulas = [\"{motion}\"]"), gain);
-        accepted(&text, "bounded-leader", "holds");
-        accepted(&text, "sign-gain", "holds");
+        all_hold(&text, &["bounded-leader", "sign-gain"]);
     }
     // What has no weight does not count, and factors that belong together stay so.
     for (motion, gain, less) in [("atan(2 + t/20)", "10", "0.005"), ("0.5*tanh(1 - exp(-t)) + cos(t)", "3", "1.2")] {
@@ -249,8 +255,7 @@ fn random_graphs_are_certified_by_the_edges_that_were_drawn() {
     let text = text.replace("[[0.0], [1.0], [2.0]]", "[[0.0], [1.0], [2.0], [3.0], [4.0]]");
     for degree in ["2", "3"] {
         let text = text.replace("in_degree = 1", &format!("in_degree = {degree}"));
-        accepted(&text, "spanning-tree", "holds");
-        accepted(&text, "agreement", "holds");
+        all_hold(&text, &["spanning-tree", "agreement"]);
     }
 }
 

@@ -40,7 +40,7 @@ mod error;
 mod explanation;
 mod findings;
 mod folder;
-mod formula;
+pub mod formula;
 mod growing;
 mod guarantee;
 mod how;

@@ -4,7 +4,7 @@ use forwardstep_check::certificate::decimal;
 use forwardstep_check::derivation::formula::{At, Formula, Sign, Symbol};
 
 /// A formula as LaTeX, for a display.
-pub(crate) fn latex(formula: &Formula) -> String {
+pub fn latex(formula: &Formula) -> String {
     match formula {
         Formula::Number(number) => match decimal(number).split_once('/') {
             Some((above, below)) => format!("\\tfrac{{{above}}}{{{below}}}"),
@@ -32,7 +32,7 @@ pub(crate) fn latex(formula: &Formula) -> String {
 const LINE: usize = 70;
 
 /// The same in lines that a page has room for: one, or several that begin with a sign, a relation, or a factor where many fill a line.
-pub(crate) fn latex_lines(formula: &Formula) -> Vec<String> {
+pub fn latex_lines(formula: &Formula) -> Vec<String> {
     let parts = parts(formula);
     if parts.iter().map(|part| width(part)).sum::<usize>() <= LINE {
         return vec![latex(formula)];

@@ -4,7 +4,7 @@ use forwardstep_check::certificate::decimal;
 use forwardstep_check::derivation::formula::{At, Formula, Sign, Symbol};
 
 /// A formula as an element `math` of its own line. Everything in it is escaped.
-pub(crate) fn mathml(formula: &Formula) -> String {
+pub fn mathml(formula: &Formula) -> String {
     format!("<math display=\"block\">{}</math>", inner(formula))
 }
 

@@ -5,7 +5,7 @@ use forwardstep_check::derivation::formula::{At, Formula, Sign, Symbol};
 use forwardstep_core::signal::superscript;
 
 /// A formula as one line.
-pub(crate) fn unicode(formula: &Formula) -> String {
+pub fn unicode(formula: &Formula) -> String {
     match formula {
         Formula::Number(number) => decimal(number),
         Formula::Symbol(symbol) => letter(symbol),

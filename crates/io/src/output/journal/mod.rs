@@ -23,13 +23,7 @@
 //! A reader takes frames as long as they hold and leaves out the rest. A writer appends to a file that it made itself, and after a
 //! write or a sync that failed never again: nothing stands behind a torn frame. It cuts that off, if it can, since the tables need the space.
 
-#[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-mod faults;
 mod read;
-#[cfg(test)]
-#[allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
-mod tests;
 mod write;
 
 use std::fs::File;
@@ -40,8 +34,7 @@ use serde::{Deserialize, Serialize};
 
 use super::summary::Summary;
 
-pub use read::JournalError;
-pub(crate) use read::{ReadJournal, read};
+pub use read::{JournalError, ReadJournal, read};
 pub use write::Journal;
 
 /// Its name in the folder of a run.
@@ -64,17 +57,17 @@ const MOST_TEXT_BYTES: u64 = 1 << 30;
 
 /// What the rows belong to.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Head {
+pub struct Head {
     /// The names of the columns as in the tables, `t_s` first.
-    pub(crate) columns: Vec<String>,
+    pub columns: Vec<String>,
     /// The digest of the summary that stood in the folder when the run began: that of another run, which this one is to replace.
-    pub(crate) replaces_blake3: Option<String>,
+    pub replaces_blake3: Option<String>,
     /// The text of the scenario.
-    pub(crate) scenario: String,
+    pub scenario: String,
     /// The files that the scenario names, by their names in it.
-    pub(crate) inputs: Vec<(String, String)>,
+    pub inputs: Vec<(String, String)>,
     /// What is known before the first step.
-    pub(crate) summary: Summary,
+    pub summary: Summary,
 }
 
 /// Frames one behind the other.

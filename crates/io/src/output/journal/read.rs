@@ -30,17 +30,23 @@ pub enum JournalError {
 }
 
 /// What a journal says.
-pub(crate) struct ReadJournal {
-    pub(crate) head: Head,
-    pub(crate) columns: NamedColumns,
+#[derive(Debug)]
+pub struct ReadJournal {
+    /// What the rows belong to.
+    pub head: Head,
+    /// The rows column by column, under the names that the head gives, `t_s` first.
+    pub columns: Vec<(String, Vec<f64>)>,
     /// Of a run that ended in order.
-    pub(crate) end: Option<Summary>,
+    pub end: Option<Summary>,
     /// Bytes behind all that holds.
-    pub(crate) left_out: u64,
+    pub left_out: u64,
 }
 
 /// Reads a journal of `length` bytes. What is behind a frame that does not hold is left out, whatever it says.
-pub(crate) fn read(mut input: impl Read, length: u64) -> Result<ReadJournal, JournalError> {
+///
+/// # Errors
+/// [`JournalError`] where nothing of it can be read. No bytes panic, and a length that is not true takes no memory.
+pub fn read(mut input: impl Read, length: u64) -> Result<ReadJournal, JournalError> {
     let mut opening = [0; 20];
     let opened = input.read_exact(&mut opening);
     let (magic, format) = opening.split_at(MAGIC.len());

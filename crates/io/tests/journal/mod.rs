@@ -8,11 +8,17 @@ use std::time::Duration;
 use forwardstep_check::Report;
 use forwardstep_sim::{Ending, Outcome, Recording, RowSink, Statistics, recorded_columns, simulate, simulate_into};
 
-use super::super::{Remark, RunFolder, RunRecord, SavedRun, metrics};
-use super::{FRAME_HEAD, JOURNAL, Journal, JournalError, ReadJournal, read};
-use crate::SourceText;
-use crate::scenario::kinds::Kinds;
-use crate::scenario::{Scenario, read_scenario};
+use forwardstep_io::SourceText;
+use forwardstep_io::output::journal::{ReadJournal, read};
+use forwardstep_io::output::{Journal, JournalError, Metrics, Remark, RunFolder, RunRecord, SavedRun};
+use forwardstep_io::scenario::kinds::Kinds;
+use forwardstep_io::scenario::{Scenario, read_scenario};
+
+mod faults;
+
+const JOURNAL: &str = "rows.journal";
+/// Kind, length and checksum of a frame.
+const FRAME_HEAD: usize = 28;
 
 const CARTS: &str = r#"format = 2
 title = "Two carts"
@@ -30,13 +36,13 @@ delay.constant_s = 0.1
 edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
 "#;
 
-pub(super) fn carts() -> (Scenario, Report) {
+fn carts() -> (Scenario, Report) {
     let scenario = read_scenario("carts", &SourceText::new("carts.toml", CARTS), None).unwrap();
     let verdicts = forwardstep_check::check(&scenario.setup);
     (scenario, verdicts)
 }
 
-pub(super) fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: &'a Outcome) -> RunRecord<'a> {
+fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: &'a Outcome) -> RunRecord<'a> {
     RunRecord {
         title: &scenario.title,
         scenario_name: "carts",
@@ -58,12 +64,12 @@ pub(super) fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: 
 }
 
 /// The outcome of the carts before their first step.
-pub(super) fn nothing((scenario, _): &(Scenario, Report)) -> Outcome {
+fn nothing((scenario, _): &(Scenario, Report)) -> Outcome {
     let recording = Recording { t_s: Vec::new(), columns: recorded_columns(&scenario.setup).unwrap() };
     Outcome { recording, ending: Ending::Interrupted { t_s: 0.0 }, statistics: Statistics::default() }
 }
 
-pub(super) fn whole((scenario, _): &(Scenario, Report)) -> Outcome {
+fn whole((scenario, _): &(Scenario, Report)) -> Outcome {
     simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
@@ -90,14 +96,14 @@ impl RowSink for Counted<'_> {
 }
 
 /// Simulates the carts into the journal of `folder`, which is written after every step; how many rows it has kept, if it did not fail.
-pub(super) fn journaled(carts: &(Scenario, Report), folder: &RunFolder, ends: bool) -> (Outcome, usize, bool) {
+fn journaled(carts: &(Scenario, Report), folder: &RunFolder, ends: bool) -> (Outcome, usize, bool) {
     let start = nothing(carts);
     let journal = Journal::new(folder, record(carts, &start), || Duration::ZERO).every(Duration::ZERO);
     let mut sink = Counted { journal, rows: 0, kept: 0 };
     let outcome = simulate_into(&carts.0.setup, &mut |_| ControlFlow::Continue(()), None, &mut sink).unwrap();
     if ends {
         let record = record(carts, &outcome);
-        sink.journal.end(&record, metrics(&record));
+        sink.journal.end(&record, Metrics::of(record.setup, &record.outcome.recording, None, None));
     }
     let failed = sink.journal.failure().is_some();
     assert!(sink.journal.failure().is_none_or(|error| error.help().is_some()), "nothing says what to do");
@@ -129,7 +135,7 @@ fn first_rows(found: &ReadJournal, outcome: &Outcome) -> usize {
     rows
 }
 
-pub(super) fn same_rows(run: &SavedRun, outcome: &Outcome, carts: &(Scenario, Report)) -> usize {
+fn same_rows(run: &SavedRun, outcome: &Outcome, carts: &(Scenario, Report)) -> usize {
     let record = run.record(&carts.1, None, &[]);
     let found = &record.outcome.recording;
     let rows = found.t_s.len();

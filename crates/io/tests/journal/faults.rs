@@ -10,12 +10,11 @@ use std::time::Duration;
 use forwardstep_check::Report;
 use forwardstep_sim::RowSink;
 
-use super::super::disk::SystemDisk;
-use super::super::{Disk, DiskFile, Options, Remark, RunFolder, SavedRun, write_run};
-use super::tests::{carts, journaled, nothing, record, same_rows, whole};
-use super::{JOURNAL, Journal};
-use crate::scenario::Scenario;
-use crate::scenario::kinds::Kinds;
+use forwardstep_io::output::{Disk, DiskFile, Journal, Options, Remark, RunFolder, SavedRun, write_run};
+use forwardstep_io::scenario::Scenario;
+use forwardstep_io::scenario::kinds::Kinds;
+
+use super::{JOURNAL, carts, journaled, nothing, record, same_rows, whole};
 
 /// How an operation fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +78,7 @@ impl Faulty {
 impl Disk for Faulty {
     fn create_folders(&self, path: &Path) -> io::Result<()> {
         self.next()?;
-        SystemDisk.create_folders(path)
+        fs::create_dir_all(path)
     }
 
     fn create_file(&self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
@@ -99,12 +98,12 @@ impl Disk for Faulty {
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
         self.next()?;
-        SystemDisk.rename(from, to)
+        fs::rename(from, to)
     }
 
     fn remove_file(&self, path: &Path) -> io::Result<()> {
         self.next()?;
-        SystemDisk.remove_file(path)
+        fs::remove_file(path)
     }
 
     fn sync_folder(&self, _: &Path) -> io::Result<()> {
@@ -237,7 +236,7 @@ struct SmallFile {
 
 impl Disk for Small {
     fn create_folders(&self, path: &Path) -> io::Result<()> {
-        SystemDisk.create_folders(path)
+        fs::create_dir_all(path)
     }
 
     fn create_file(&self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
@@ -245,12 +244,12 @@ impl Disk for Small {
     }
 
     fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
-        SystemDisk.rename(from, to)
+        fs::rename(from, to)
     }
 
     fn remove_file(&self, path: &Path) -> io::Result<()> {
         let length = path.metadata()?.len();
-        SystemDisk.remove_file(path)?;
+        fs::remove_file(path)?;
         *self.0.lock().unwrap() += length;
         Ok(())
     }
