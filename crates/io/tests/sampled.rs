@@ -108,6 +108,28 @@ fn regress_modes_that_do_not_grow_within_a_run_are_no_limit_of_its_period() {
     assert!(rule.linearised && rule.period_s > 0.3, "{rule:?}");
 }
 
+/// Nothing is advised that would be refused.
+#[test]
+fn regress_a_rate_that_no_run_may_have_is_not_advised() {
+    let text = "format = 2\ntime.end_s = 60\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 2e-6 }\n\
+                start.position_m = [[1.0], [-0.5]]\n[reference.consensus]\nroots_per_s = [0.5]\nexchange = \"position\"\n\
+                [law.known]\ndamping.gain = GAIN\n[network]\nedges.ring = {}\n[control]\nsample_hz = 10\n";
+    let said = |gain: &str| {
+        let text = text.replace("GAIN", gain);
+        let read = read_scenario("own", &SourceText::new("own.toml", &text), Inputs::default()).unwrap();
+        let coarse = read.notices.iter().find(|notice| matches!(notice, Notice::CoarseSampling { .. })).unwrap();
+        let rate = match coarse {
+            Notice::CoarseSampling { enough_hz, .. } => enough_hz.unwrap(),
+            _ => unreachable!(),
+        };
+        (rate * 60.0 <= 1e7, coarse.to_string())
+    };
+    let (is_allowed, words) = said("0.01");
+    assert!(is_allowed && words.contains("; sample at ") && words.contains(" Hz, or let K be smaller"), "{words}");
+    let (is_allowed, words) = said("1");
+    assert!(!is_allowed && words.contains("no rate that a run may have is enough; let K be smaller"), "{words}");
+}
+
 /// Of one root and positions q̇ becomes (1 − h (κ₀ + Σ_j w_ij)) q̇ with s = 0 beside what is heard, which decays up to 2/(κ₀ + Σ_j w_ij), however
 /// slow the root is beside K/M. With λ runs bear 136 ms, and 127 ms where nothing but λ is fast.
 #[test]

@@ -339,3 +339,25 @@ fn regress_a_delay_held_for_half_of_the_run_is_bounded_by_the_run_alone() {
         assert!(said.contains(words), "{said}");
     }
 }
+
+/// A leader that rests until long after the run, with agents that start where it is: any sign that is held leaves too much beside that.
+#[test]
+fn regress_a_period_that_no_run_may_have_is_not_advised() {
+    let led = |from_s: f64| {
+        let motion =
+            format!("motion.formulas = [\"1 + tanh(t - {from_s})\"]\n[reference.leader]\ndesign = \"continuous\"\n");
+        let design = format!("[leader]\n{motion}gain = 9\nsign_period_s = 0.01\nroots_per_s = [1.0]\n");
+        let text = masses("");
+        let (from, to) = (text.find("[reference").unwrap(), text.find("[law").unwrap());
+        let edges = "edges = [[\"leader\", \"m-1\"], [\"m-1\", \"m-2\"]]\n";
+        let network = text.find("edges = ").unwrap();
+        let text = format!("{}{design}{}{edges}", &text[..from], &text[to..network]).replace("[[1.0]", "[[0.0]");
+        let folder = with(&text);
+        stdout(&forwardstep(&folder, &["check", "two.toml"]).code(1))
+    };
+    let said = led(60.0);
+    assert!(said.contains("since no period that a run may have is short enough"), "{said}");
+    assert!(!said.contains("`sign_period_s` of at most"), "{said}");
+    let said = led(13.0);
+    assert!(said.contains("to make it hold: `sign_period_s` of at most"), "{said}");
+}

@@ -5,6 +5,7 @@ use std::fmt;
 use forwardstep_check::{
     FastestDamping, MarginAt, PracticalAnswer, RECOMMENDED_MARGIN, SamplingMargin, WholeLoop, fastest_damping,
 };
+use forwardstep_sim::quantity::MOST_EVENTS;
 use forwardstep_sim::{AgentSetup, Axis, AxisUnit, Method, PositionKind, Setup};
 
 use super::attitude::turn_rad;
@@ -35,6 +36,8 @@ pub enum Notice {
         sigma: f64,
         /// A sample rate that would be enough, Hz; `None` where the torque comes too late for any.
         enough_hz: Option<f64>,
+        /// Whether a run of this length may have so many samples.
+        is_allowed: bool,
         /// The gain that is to be smaller.
         too_large: &'static str,
     },
@@ -237,15 +240,19 @@ impl Notice {
             };
             margin.rival_per_s.and_then(|_| WholeLoop::longest_period_s(margin.period_s, sampled))
         };
-        (margin.answer() > PracticalAnswer::Adequate).then(|| Notice::CoarseSampling {
-            agent: agent.name.clone(),
-            sigma: *sigma,
+        (margin.answer() > PracticalAnswer::Adequate).then(|| {
             // A little more, since it is shown rounded.
-            enough_hz: recommended_s.map(|period_s| {
+            let enough_hz = recommended_s.map(|period_s| {
                 let whole_s = whole_s().map_or(f64::INFINITY, |whole_s| RECOMMENDED_MARGIN * whole_s);
                 1.05 / period_s.min(whole_s)
-            }),
-            too_large: margin.too_large(),
+            });
+            Notice::CoarseSampling {
+                agent: agent.name.clone(),
+                sigma: *sigma,
+                enough_hz,
+                is_allowed: enough_hz.is_none_or(|enough_hz| enough_hz * setup.time.end_s <= MOST_EVENTS),
+                too_large: margin.too_large(),
+            }
         })
     }
 }
@@ -254,13 +261,16 @@ impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Notice::Robot { agents, notice } => write!(f, "{agents}: {notice}"),
-            Notice::CoarseSampling { agent, sigma, enough_hz, too_large } => {
+            Notice::CoarseSampling { agent, sigma, enough_hz, is_allowed, too_large } => {
                 write!(
                     f,
                     "`sample_hz` is low for the gains: the sampling margin σ is {sigma:.3} for {agent}; at most \
                      {RECOMMENDED_MARGIN} is recommended, and from 1 on it is not shown to be stable; "
                 )?;
                 match enough_hz {
+                    Some(_) if !is_allowed => {
+                        write!(f, "no rate that a run may have is enough; let {too_large} be smaller")
+                    }
                     Some(enough_hz) => write!(f, "sample at {} Hz, or let {too_large} be smaller", about(*enough_hz)),
                     None => {
                         write!(f, "with these gains the torque comes too late for any rate; let {too_large} be smaller")
