@@ -6,16 +6,14 @@
 Status 77 where chromium or chromedriver is not there. Needs nothing but Python.
 """
 
-import os
 import pathlib
 import subprocess
 import sys
 
 import webdriver
-from checks import NO_BROWSER
+from checks import LONG, NO_BROWSER
 from pages import SCENARIOS
 
-LONG = "FORWARDSTEP_LONG" in os.environ
 BESIDE = [["follow.py"], ["stage.py"], ["layout.py"], ["hands.py"], ["compare.py"]]
 BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", *SCENARIOS[::3]]]
 ALONE = [["speed.py"]] if LONG else []

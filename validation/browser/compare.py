@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 import checks
-from checks import done, drawn, expect, plays, quiet
+from checks import done, drawn, expect, plays, quiet, some
 
 SHIPS = pathlib.Path(__file__).resolve().parents[2] / "docs/book/src/ships"
 HOSTILE = "</script><img src=x onerror=alert(1)> & <b>more</b>"
@@ -134,7 +134,8 @@ def check(browser, folder):
     lines = folder.scenario("double-integrators").splitlines()
     hostile.write_text("\n".join(f"title = {json.dumps(HOSTILE)}" if line.startswith("title") else line for line in lines) + "\n")
     ships = [SHIPS / f"{name}.toml" for name in ["backstepping", "order-1", "order-2", "order-3"]]
-    for name, runs in [("ships", ships), ("arms", ["six-arms", "theorem-2"]), ("kinds", ["theorem-7", "theorem-8", "theorem-2", "five-ships", "formation"]), ("hostile", [hostile, "strict-feedback"])]:
+    pages = [("ships", ships), ("arms", ["six-arms", "theorem-2"]), ("hostile", [hostile, "strict-feedback"]), ("kinds", ["theorem-7", "theorem-8", "theorem-2", "five-ships", "formation"])]
+    for name, runs in some(pages, 2):
         page, document = compare(name, *runs)
         for dark in [False, True]:
             browser.screen(1400, 900, dark=dark)

@@ -13,7 +13,7 @@ import tarfile
 
 import checks
 import known
-from checks import TOLERANCE_M, done, expect, quiet, settled, value, waited
+from checks import TOLERANCE_M, done, expect, quiet, settled, some, value, waited
 from pages import drawings
 
 RING = "delay.constant_s = 0.1\nedges.ring = {}"
@@ -165,7 +165,7 @@ def arm_with_shapes(folder):
 
 def check(browser, folder):
     browser.screen(1400, 900)
-    for name in ["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"]:
+    for name in some(["theorem-6", "task-space-ur5e", "pose-ur5e", "redundant-panda"], 2):
         browser.open(folder.run(name))
         tips(browser, name)
     page = arm_with_shapes(folder)
@@ -179,7 +179,7 @@ def check(browser, folder):
     page = folder.run("from-a-log")
     browser.open(page)
     flights(browser, "from-a-log", page)
-    for name in ["six-arms", "theorem-7"]:
+    for name in some(["six-arms", "theorem-7"], 2):
         page = folder.run(name)
         browser.open(page)
         film(browser, name, page)
