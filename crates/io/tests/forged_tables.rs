@@ -8,12 +8,12 @@ use std::path::Path;
 
 use allocation_counter::measure;
 use forwardstep_io::SourceText;
-use forwardstep_io::output::{
-    Options, ParquetProblem, RestoreError, RunFolder, RunRecord, SavedRun, TableError, write_run,
-};
+use forwardstep_io::output::{Options, ParquetProblem, RestoreError, RunFolder, SavedRun, TableError, write_run};
 use forwardstep_io::scenario::read_scenario;
 use forwardstep_sim::recording::Recording;
 use forwardstep_sim::simulate;
+
+use crate::support::plain_record;
 
 const CART: &str = r#"format = 2
 title = "A cart"
@@ -38,24 +38,8 @@ fn write(folder: &Path, change: impl FnOnce(&mut Recording)) -> Recording {
     let scenario = read_scenario("cart", &SourceText::new("cart.toml", CART), None).unwrap();
     let mut outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
     change(&mut outcome.recording);
-    let record = RunRecord {
-        title: &scenario.title,
-        scenario_name: &scenario.name,
-        scenario_text: CART,
-        inputs: &scenario.inputs,
-        version: "0.1.0",
-        setup: &scenario.setup,
-        outcome: &outcome,
-        verdicts: &forwardstep_check::check(&scenario.setup),
-        predicted_agreement: None,
-        prediction: None,
-        goal: None,
-        digital: None,
-        injected: Vec::new(),
-        injected_course: None,
-        notices: Vec::new(),
-        shapes: None,
-    };
+    let verdicts = forwardstep_check::check(&scenario.setup);
+    let record = plain_record(&scenario, &outcome, &verdicts);
     write_run(&RunFolder::create(folder, true).unwrap(), &record, Options::default()).unwrap();
     outcome.recording
 }

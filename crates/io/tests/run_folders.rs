@@ -4,9 +4,11 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use forwardstep_io::output::{Options, OutputError, RunFolder, RunRecord, write_run};
+use forwardstep_io::output::{Options, OutputError, RunFolder, write_run};
 use forwardstep_io::scenario::{OpenError, open_scenario};
 use forwardstep_sim::simulate;
+
+use crate::support::plain_record;
 
 const CARTS: &str = r#"format = 2
 title = "Two carts"
@@ -37,24 +39,8 @@ fn run(scenario: &Path, out: &Path) {
 fn run_into(folder: &RunFolder, scenario: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let scenario = open_scenario(scenario.to_str().unwrap()).unwrap();
     let outcome = simulate(&scenario.setup, &mut |_| ControlFlow::Continue(())).unwrap();
-    let record = RunRecord {
-        title: &scenario.title,
-        scenario_name: &scenario.name,
-        scenario_text: scenario.source.text(),
-        inputs: &scenario.inputs,
-        version: "0.1.0",
-        setup: &scenario.setup,
-        outcome: &outcome,
-        verdicts: &forwardstep_check::check(&scenario.setup),
-        predicted_agreement: None,
-        prediction: None,
-        goal: None,
-        digital: None,
-        injected: Vec::new(),
-        injected_course: None,
-        notices: Vec::new(),
-        shapes: None,
-    };
+    let verdicts = forwardstep_check::check(&scenario.setup);
+    let record = plain_record(&scenario, &outcome, &verdicts);
     write_run(folder, &record, Options::default())
 }
 

@@ -14,6 +14,8 @@ use forwardstep_io::output::{Journal, JournalError, Metrics, Remark, RunFolder, 
 use forwardstep_io::scenario::kinds::Kinds;
 use forwardstep_io::scenario::{Scenario, read_scenario};
 
+use crate::support::plain_record;
+
 mod faults;
 
 const JOURNAL: &str = "rows.journal";
@@ -43,24 +45,7 @@ fn carts() -> (Scenario, Report) {
 }
 
 fn record<'a>((scenario, verdicts): &'a (Scenario, Report), outcome: &'a Outcome) -> RunRecord<'a> {
-    RunRecord {
-        title: &scenario.title,
-        scenario_name: "carts",
-        scenario_text: CARTS,
-        inputs: &[],
-        version: "0.1.0",
-        setup: &scenario.setup,
-        outcome,
-        verdicts,
-        predicted_agreement: None,
-        prediction: None,
-        goal: None,
-        digital: None,
-        injected: Vec::new(),
-        injected_course: None,
-        notices: Vec::new(),
-        shapes: None,
-    }
+    plain_record(scenario, outcome, verdicts)
 }
 
 /// The outcome of the carts before their first step.

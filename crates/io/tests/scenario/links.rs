@@ -5,13 +5,15 @@ use std::path::Path;
 
 use forwardstep_check::{Report, check};
 use forwardstep_io::SourceText;
-use forwardstep_io::output::{Options, RunFolder, RunRecord, write_run};
+use forwardstep_io::output::{Options, RunFolder, write_run};
 use forwardstep_io::scenario::{Notice, Scenario, ScenarioError, open_scenario, read_scenario};
 use forwardstep_sim::delay::{Delay, Loss, Packet, PacketLink, RandomHold, Trace};
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::{Outcome, Progress, simulate};
 
 use super::{as_stated, changed, read};
+
+use crate::support::plain_record;
 
 /// Every way to say how late a message is once, but for logs, which need a folder.
 pub(super) const LINKS: &str = r#"format = 2
@@ -258,24 +260,7 @@ fn stopped_at(scenario: &Scenario, t_s: f64, folder: &Path) -> Outcome {
         |progress: Progress| if progress.t_s < t_s { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     let outcome = simulate(&scenario.setup, &mut goes_on).unwrap();
     let verdicts: Report = check(&scenario.setup);
-    let record = RunRecord {
-        title: &scenario.title,
-        scenario_name: &scenario.name,
-        scenario_text: scenario.source.text(),
-        inputs: &scenario.inputs,
-        version: "0.0.0",
-        setup: &scenario.setup,
-        outcome: &outcome,
-        verdicts: &verdicts,
-        predicted_agreement: None,
-        prediction: None,
-        goal: None,
-        digital: None,
-        injected: Vec::new(),
-        injected_course: None,
-        notices: Vec::new(),
-        shapes: None,
-    };
+    let record = plain_record(scenario, &outcome, &verdicts);
     let folder = RunFolder::create(folder, false).unwrap();
     write_run(&folder, &record, Options::default()).unwrap();
     outcome

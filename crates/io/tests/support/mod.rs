@@ -10,7 +10,7 @@ use forwardstep_check::{Hypothesis, Id, Report, Theorem};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_io::output::{GoalOutcome, RunRecord};
-use forwardstep_io::scenario::Goal;
+use forwardstep_io::scenario::{Goal, Scenario};
 use forwardstep_sim::delay::{Basis, Delay, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::recording::{Column, Statistics};
@@ -208,6 +208,28 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         ),
         prediction: None,
         goal: Some(GoalOutcome { goal: Goal::DisagreementBelow(0.05), met: true }),
+        digital: None,
+        injected: Vec::new(),
+        injected_course: None,
+        notices: Vec::new(),
+        shapes: None,
+    }
+}
+
+/// What a run leaves of itself: no goal, nothing that was predicted, nothing beside it.
+pub fn plain_record<'a>(scenario: &'a Scenario, outcome: &'a Outcome, verdicts: &'a Report) -> RunRecord<'a> {
+    RunRecord {
+        title: &scenario.title,
+        scenario_name: &scenario.name,
+        scenario_text: scenario.source.text(),
+        inputs: &scenario.inputs,
+        version: "0.1.0",
+        setup: &scenario.setup,
+        outcome,
+        verdicts,
+        predicted_agreement: None,
+        prediction: None,
+        goal: None,
         digital: None,
         injected: Vec::new(),
         injected_course: None,
