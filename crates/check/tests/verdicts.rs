@@ -25,7 +25,7 @@ use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::schedule::{Logged, Phase, Schedule};
-use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
     Adaptive, Control, Exchange, Known, RotorcraftModel, Setup, SpacecraftModel, ThrustKind, ThrustLaw,
 };
@@ -385,4 +385,17 @@ fn a_passivity_filter_is_shown_for_what_keeps_still_and_for_equal_moments_of_ine
     tilted.agents[0].robot.kind = Arc::new(SpacecraftModel { inertia_kg_m2, wheels: Wheels::orthogonal() });
     let at_rest = check(&tilted).hypotheses.into_iter().find(|hypothesis| hypothesis.id == Id::TargetAtRest).unwrap();
     assert_eq!(at_rest.answer(), Answer::NotShown);
+}
+
+/// One entry goes to zero and stays there, and another passes zero long after the run, where nobody looks.
+#[test]
+fn regress_an_attitude_of_which_a_part_goes_on_after_the_run_is_not_shown_by_it() {
+    let goes = Path::Spline(Spline::new(vec![0.0, 5.0], vec![1.0, 0.0]).unwrap());
+    let swings = Path::Formula((Expression::variable(0) * 0.01 + 0.1).cos_of());
+    let passes = tracking(spacecraft(), vec![goes.clone(), swings, rest_at(0.0), rest_at(0.0)]);
+    assert_eq!(answer(&passes, About::Path), Answer::NotShown);
+    // Where nothing moves any more, the run says it.
+    let back = Path::Spline(Spline::new(vec![0.0, 5.0], vec![-0.5, 1.0]).unwrap());
+    let rests = tracking(spacecraft(), vec![goes, back, rest_at(0.0), rest_at(0.0)]);
+    assert_eq!(answer(&rests, About::Path), Answer::Holds);
 }

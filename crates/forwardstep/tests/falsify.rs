@@ -188,8 +188,7 @@ fn attack_says_why_a_scenario_cannot_be_attacked() {
 fn attack_inside_a_theorem_finds_nothing_that_grows() {
     let folder = folder();
     for target in ["a1", "24"] {
-        let said =
-            stdout(&forwardstep(&folder, &["attack", target, "--seconds", "1.5", "--out", "found.toml"]).code(0));
+        let said = stdout(&forwardstep(&folder, &["attack", target, "--seconds", "3", "--out", "found.toml"]).code(0));
         let percent = said.split("worst: ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
         let percent: f64 = percent.parse().unwrap_or_else(|_| panic!("{said}"));
         assert!(percent > 0.0 && percent < 100.0 && said.contains("do not hold for it: none\n"), "{said}");

@@ -16,21 +16,7 @@ use forwardstep_sim::{
 };
 use proptest::prelude::*;
 
-const CARTS: &str = r#"format = 2
-title = "Two carts"
-time = { end_s = 0.5, record_every_s = 0.1 }
-[[agents]]
-name = "cart"
-count = 2
-robot.point_mass = { dimension = 1, mass_kg = 2 }
-start.position_m = [[0], [1]]
-[reference.consensus]
-roots_per_s = [1, 2]
-exchange = "position_velocity"
-[network]
-delay.constant_s = 0.1
-edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
-"#;
+use crate::support::CARTS;
 
 const LED: &str = r#"[reference.leader]
 design = "continuous"

@@ -289,6 +289,17 @@ fn regress_what_peaks_at_once_is_found_however_long_the_run_is() {
             assert!((peak.value / known.value - 1.0).abs() < 3e-4 && peak.at_most.is_some(), "{peak:?} {known:?}");
         }
     }
+    // With an estimate that is off, what is added where the torque is largest counts, too, however few the rows are at which that is computed.
+    let mut off = setup.clone();
+    for agent in &mut off.agents {
+        let (damping, adaptation) = (Gain::Number(5.0), Gain::Number(10.0));
+        agent.law = Arc::new(Adaptive { damping, adaptation, estimate_start: vec![0.5], bounds: None });
+    }
+    let (long, close) = (with(&off, 400.0, 0.5), with(&off, 5.0, 0.0005));
+    for (peak, known) in long.peak_torques.iter().zip(&close.peak_torques) {
+        let [most, known_most] = [peak, known].map(|peak| peak.at_most.unwrap());
+        assert!(known_most > 1.05 * known.value.abs() && most > 0.999 * known_most, "{peak:?} {known:?}");
+    }
     // With so many agents there is no room for rows that are close: what lies between them is not bounded.
     setup.agents = (0..200).flat_map(|_| setup.agents.clone()).collect();
     setup.network.agents = 400;

@@ -178,7 +178,14 @@ fn regress_a_delay_that_changes_after_the_run_is_not_constant() {
     for stays in ["0.3", "0.1 + 0.2", "0.3 + min(0, 1)"] {
         assert_eq!(answer(&apart(stays), "common-first-root"), "holds", "{stays}");
     }
-    for changes in ["0.3 + 0.1*max(0, min(1, t - 50))", "0.3 + 0.1*min(1, max(0, t - 50))*sin(t^2)"] {
+    // Until then each is a number, and some of them that very number in binary digits.
+    for changes in [
+        "0.3 + 0.1*max(0, min(1, t - 50))",
+        "0.3 + 0.1*min(1, max(0, t - 50))*sin(t^2)",
+        "0.25 + 0.25*min(1, max(0, t - 50))",
+        "min(1, max(0, t - 50))",
+        "max(0, t - 50)",
+    ] {
         assert_ne!(answer(&apart(changes), "common-first-root"), "holds", "{changes}");
     }
 }

@@ -14,7 +14,7 @@ use forwardstep_io::output::{Journal, JournalError, Metrics, Remark, RunFolder, 
 use forwardstep_io::scenario::kinds::Kinds;
 use forwardstep_io::scenario::{Scenario, read_scenario};
 
-use crate::support::plain_record;
+use crate::support::{CARTS, plain_record};
 
 mod faults;
 
@@ -22,24 +22,9 @@ const JOURNAL: &str = "rows.journal";
 /// Kind, length and checksum of a frame.
 const FRAME_HEAD: usize = 28;
 
-const CARTS: &str = r#"format = 2
-title = "Two carts"
-time = { end_s = 0.5, record_every_s = 0.05 }
-[[agents]]
-name = "cart"
-count = 2
-robot.point_mass = { dimension = 1, mass_kg = 2 }
-start.position_m = [[0], [1]]
-[reference.consensus]
-roots_per_s = [1, 2]
-exchange = "position_velocity"
-[network]
-delay.constant_s = 0.1
-edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
-"#;
-
 fn carts() -> (Scenario, Report) {
-    let scenario = read_scenario("carts", &SourceText::new("carts.toml", CARTS), None).unwrap();
+    let text = CARTS.replace("record_every_s = 0.1", "record_every_s = 0.05");
+    let scenario = read_scenario("carts", &SourceText::new("carts.toml", text), None).unwrap();
     let verdicts = forwardstep_check::check(&scenario.setup);
     (scenario, verdicts)
 }

@@ -20,6 +20,23 @@ use forwardstep_sim::{
     Signal, Solver, Start, TimeSpan,
 };
 
+/// Two carts that hear each other.
+pub const CARTS: &str = r#"format = 2
+title = "Two carts"
+time = { end_s = 0.5, record_every_s = 0.1 }
+[[agents]]
+name = "cart"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+start.position_m = [[0], [1]]
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position_velocity"
+[network]
+delay.constant_s = 0.1
+edges = [["cart-1", "cart-2"], ["cart-2", "cart-1"]]
+"#;
+
 /// Every so many of these, and all of them where `.ci/long` asks for that.
 pub fn some<T>(all: impl IntoIterator<Item = T>, every: usize) -> impl Iterator<Item = T> {
     all.into_iter().step_by(if std::env::var_os("FORWARDSTEP_LONG").is_some() { 1 } else { every })

@@ -225,14 +225,11 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
                 // What is left is in proportion to the period.
                 let small_s = if left.is_finite() { period_s * MOST_LEFT * scale / left } else { f64::INFINITY };
                 let longest_s = (MOST_HELD / rate_per_s).min(0.5 * end_s).min(small_s);
-                // An exact sign would be needed for it.
-                if end_s / longest_s > MOST_EVENTS {
-                    return Some(
-                        "a leader that moves further or changes its motion less, since no period that a run may have is short enough"
-                            .into(),
-                    );
-                }
                 match sampled {
+                    _ if end_s / longest_s > MOST_EVENTS => {
+                        "a leader that moves further or changes its motion less, since no period that a run may have is short enough"
+                            .into()
+                    }
                     true => format!("`sample_hz` of at least {}", rounded_up(1.0 / longest_s)),
                     false => format!("`sign_period_s` of at most {}", rounded_down(longest_s)),
                 }
