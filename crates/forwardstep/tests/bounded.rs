@@ -8,7 +8,7 @@ use forwardstep::check::{Answer, Id, check};
 use forwardstep::io::SourceText;
 use forwardstep::io::output::Metrics;
 use forwardstep::io::scenario::{Scenario, read_scenario, shipped_scenario};
-use forwardstep::sim::{Ending, Moment, Signal, simulate, simulate_moments};
+use forwardstep::sim::{Ending, Moment, Observers, Signal, simulate, simulate_with};
 
 /// Shipped scenarios with an adaptive law, what to replace in them, and whether a mass is what bounds keep.
 const LAWS: [(&str, &str, &str); 6] = [
@@ -59,8 +59,12 @@ fn every_adaptive_law_keeps_its_identities_and_its_goal_with_bounds() {
         setup.time.record_every_s = 0.05;
         setup.time.end_s = setup.time.end_s.min(3.0);
         let mut residuals = Residuals::of(&setup).unwrap();
-        simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut |moment: Moment<'_>| residuals.look(moment))
-            .unwrap();
+        simulate_with(
+            &setup,
+            &mut |_| ControlFlow::Continue(()),
+            Observers { moments: Some(&mut |moment: Moment<'_>| residuals.look(moment)), ..Observers::default() },
+        )
+        .unwrap();
         let found: Vec<Residual> = residuals.found().into_iter().flat_map(|(_, found)| found).collect();
         let broken: Vec<_> = found.iter().filter(|one| one.holds() == Some(false)).collect();
         assert!(broken.is_empty(), "{name}: {broken:?}");

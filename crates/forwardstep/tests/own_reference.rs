@@ -25,7 +25,7 @@ use forwardstep::sim::graph::Edge;
 use forwardstep::sim::push::{Course, Effect, Function, Push};
 use forwardstep::sim::reference::Consensus;
 use forwardstep::sim::schedule::{Phase, Schedule};
-use forwardstep::sim::{AgentSetup, Network, Outcome, Setup, Signal, simulate, simulate_moments};
+use forwardstep::sim::{AgentSetup, Network, Observers, Outcome, Setup, Signal, simulate, simulate_with};
 use miette::Diagnostic;
 
 const HOMES: &str = r#"format = 2
@@ -77,7 +77,12 @@ fn their_linear_form_is_explained() {
     assert!(has("q\u{308}_i = z\u{307}_i + s\u{307}_i"), "{lines:?}");
     // Along a run it holds, with c as it is at the first row.
     let mut residuals = Residuals::of(&setup).unwrap();
-    simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut |moment| residuals.look(moment)).unwrap();
+    simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { moments: Some(&mut |moment| residuals.look(moment)), ..Observers::default() },
+    )
+    .unwrap();
     let found = residuals.found().remove(0).1;
     assert!(found.iter().all(|one| one.holds() != Some(false)), "{found:?}");
     assert_eq!(found.iter().filter(|one| one.largest == Err(Missing::Term)).count(), 0, "{found:?}");

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 
 use example::{MASS_KG, PERIOD_S, Pair, START_M, latency_s, moved};
 use forwardstep::sim::delay::{Delay, Packet, Trace};
-use forwardstep::sim::{AgentSetup, Ending, Known, Network, RobotSetup, Setup, Signal, simulate_samples};
+use forwardstep::sim::{AgentSetup, Ending, Known, Network, Observers, RobotSetup, Setup, Signal, simulate_with};
 
 const END_S: f64 = 20.0;
 
@@ -28,9 +28,16 @@ fn setup() -> Setup {
 #[test]
 fn digest_controllers_stepped_by_hand_have_the_bits_of_the_simulator() {
     let mut log = [Vec::new(), Vec::new()];
-    let outcome = simulate_samples(&setup(), &mut |_| ControlFlow::Continue(()), &mut |taken| {
-        log[taken.agent].push(([taken.measured[0], taken.measured[1]], taken.command[0]));
-    })
+    let outcome = simulate_with(
+        &setup(),
+        &mut |_| ControlFlow::Continue(()),
+        Observers {
+            samples: Some(&mut |taken| {
+                log[taken.agent].push(([taken.measured[0], taken.measured[1]], taken.command[0]));
+            }),
+            ..Observers::default()
+        },
+    )
     .unwrap();
     assert_eq!(outcome.ending, Ending::Completed);
     let mut pair = Pair::new().unwrap();

@@ -8,7 +8,7 @@ use forwardstep_io::SourceText;
 use forwardstep_io::output::Deployment;
 use forwardstep_io::scenario::{Inputs, Notice, open_scenario, read_scenario};
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::{Control, Ending, Method, Outcome, Setup, Signal, simulate, simulate_watched};
+use forwardstep_sim::{Control, Ending, Method, Observers, Outcome, Setup, Signal, simulate, simulate_with};
 
 /// Over the first seconds, at tight tolerance.
 fn shortened(name: &str) -> Setup {
@@ -187,7 +187,12 @@ fn prop_what_is_put_into_v_adds_up_in_shipped_scenarios() {
         setup.time.end_s = if name == "teleoperation" { 5.5 } else { 0.8 };
         setup.control.get_or_insert_with(|| control(500.0));
         let mut watch = InjectionWatch::of(&setup).unwrap();
-        let outcome = simulate_watched(&setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+        let outcome = simulate_with(
+            &setup,
+            &mut |_| ControlFlow::Continue(()),
+            Observers { inside: Some(&mut watch), ..Observers::default() },
+        )
+        .unwrap();
         assert_eq!(outcome.ending, Ending::Completed, "{name}");
         let balances = watch.balances();
         for balance in &balances {

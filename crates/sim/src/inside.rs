@@ -1,12 +1,8 @@
 //! What sampled agents do between samples, at the nodes of a quadrature in every step.
 
-use std::ops::ControlFlow;
-
-use crate::closed_loop::{ClosedLoop, Energy, SetupError};
+use crate::closed_loop::{ClosedLoop, Energy};
 use crate::engine::{Integrator, Step};
-use crate::recording::{Outcome, Progress, SampleTaken};
-use crate::setup::Setup;
-use crate::simulate::{Observers, simulate_with};
+use crate::recording::SampleTaken;
 
 /// Nodes and weights of the rule of Gauss and Legendre on [0, 1] that is exact for polynomials of degree five.
 const NODES: [(f64, f64); 3] =
@@ -50,18 +46,6 @@ pub trait Watch {
 
     /// A step was made; its instants come in the order of time, all agents at each.
     fn inside(&mut self, at: Inside<'_>);
-}
-
-/// As [`crate::simulate`], and lets `watch` look at every step. Nothing is shown when control is continuous. The run has the same bits.
-///
-/// # Errors
-/// As [`crate::simulate`].
-pub fn simulate_watched(
-    setup: &Setup,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    watch: &mut dyn Watch,
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Observers { watch: Some(watch), ..Observers::default() })
 }
 
 /// Shows `step`, the last that was made, to `watch`, after the sample at its start if there was one; `samples` were shown before.

@@ -2,17 +2,14 @@
 
 mod variation;
 
-use std::ops::ControlFlow;
-
 pub use variation::{InputJump, InputOrder};
 
 use variation::Variation;
 
 use crate::closed_loop::{ClosedLoop, SetupError};
 use crate::engine::{Heard, Integrator, Passed, Port, Step};
-use crate::recording::{Outcome, Progress, Signal};
+use crate::recording::Signal;
 use crate::setup::Setup;
-use crate::simulate::{Observers, simulate_with};
 
 /// One agent at an instant at which what it hears may jump. Its state does not: only what is heard has two sides.
 #[derive(Clone, Copy, Debug)]
@@ -44,19 +41,6 @@ pub struct HeardAt<'a> {
     pub degree: f64,
     /// Σ_j w_ij · message_j(t − T_ij), an entry per axis and channel, channel by channel.
     pub sums: &'a [f64],
-}
-
-/// As [`crate::simulate`], and shows `jump` every agent at every instant at which the network jumps. Nothing is shown when control is
-/// digital: then nothing is heard between samples. The run has the same bits.
-///
-/// # Errors
-/// As [`crate::simulate`].
-pub fn simulate_jumps(
-    setup: &Setup,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    jump: &mut dyn FnMut(NetworkJump<'_>),
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Observers { jump: Some(jump), ..Observers::default() })
 }
 
 /// Of every agent, how its inputs depend on what it hears; orders may be lower than found here where a run comes to states in which a law does

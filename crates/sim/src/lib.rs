@@ -46,8 +46,8 @@ pub use closed_loop::{
     Assembly, Block, Energy, LimitError, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes,
     reference_dynamics, sampled_loop, validate,
 };
-pub use inside::{Inside, Place, Watch, simulate_watched};
-pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders, simulate_jumps};
+pub use inside::{Inside, Place, Watch};
+pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders};
 pub use moment::{Moment, StateRate};
 pub use network::Network;
 pub use recording::{
@@ -61,9 +61,7 @@ pub use setup::{
     ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RecordAt,
     RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{
-    check_recording, recorded_columns, simulate, simulate_into, simulate_moments, simulate_samples, simulate_told,
-};
+pub use simulate::{Observers, check_recording, recorded_columns, simulate, simulate_with};
 pub use system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
     RobotInterface,

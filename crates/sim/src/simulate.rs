@@ -36,89 +36,47 @@ const SHORTEST_USEFUL_STEP_S: f64 = 1e-5;
 /// [`SetupError`] when the setup has no meaning; nothing was computed then. A run that breaks down is not an error: see
 /// [`Ending::BrokeDown`].
 pub fn simulate(setup: &Setup, observer: &mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, SetupError> {
-    simulate_samples(setup, observer, &mut |_| {})
+    simulate_with(setup, observer, Observers::default())
 }
 
-/// The same, and hands every sample of every controller to `samples` once all agents have taken theirs, in no particular
-/// order of agents. Nothing is handed over when control is continuous.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_samples(
-    setup: &Setup,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    samples: &mut dyn FnMut(SampleTaken<'_>),
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, samples, Observers::default())
-}
-
-/// The same where agents told something else before t = 0 than they tell then: the messages of all agents, position and velocity each.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_told(
-    setup: &Setup,
-    before: &[Vec<f64>],
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Observers { before: Some(before), ..Observers::default() })
-}
-
-/// The same, and hands every agent with its rates at every row to `each`, before the row is recorded; nothing when control is digital, where
-/// reference dynamics have no rates. The run has the same bits.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_moments(
-    setup: &Setup,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    each: &mut dyn FnMut(Moment<'_>),
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Observers { moment: Some(each), ..Observers::default() })
-}
-
-/// The same, and hands every row to `rows` when it is recorded; `watch`, if there is one, looks at every step as in
-/// [`crate::simulate_watched`]. The run has the same bits.
-///
-/// # Errors
-/// As [`simulate`].
-pub fn simulate_into<'a>(
-    setup: &Setup,
-    observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    watch: Option<&'a mut dyn Watch>,
-    rows: &'a mut dyn RowSink,
-) -> Result<Outcome, SetupError> {
-    simulate_with(setup, observer, &mut |_| {}, Observers { watch, rows: Some(rows), ..Observers::default() })
-}
-
-/// Who looks at a run besides the recording.
+/// Who looks at a run besides the recording. The run has the same bits, whoever does.
 #[derive(Default)]
-pub(crate) struct Observers<'a> {
-    /// At every step of a run under digital control, from inside.
-    pub(crate) watch: Option<&'a mut dyn Watch>,
-    /// At every agent wherever the network jumps.
-    pub(crate) jump: Option<&'a mut dyn FnMut(NetworkJump<'_>)>,
-    /// At every agent with its rates, row by row.
-    pub(crate) moment: Option<&'a mut dyn FnMut(Moment<'_>)>,
-    /// At every row that is recorded.
-    pub(crate) rows: Option<&'a mut dyn RowSink>,
-    /// What agents transmitted before t = 0: the one entry that changes a run.
-    pub(crate) before: Option<&'a [Vec<f64>]>,
+pub struct Observers<'a> {
+    /// Is handed every sample of every controller once all agents have taken theirs, in no particular order of agents; nothing when control is
+    /// continuous.
+    pub samples: Option<&'a mut dyn FnMut(SampleTaken<'_>)>,
+    /// Looks at every step from inside under digital control; nothing is shown when control is continuous.
+    pub inside: Option<&'a mut dyn Watch>,
+    /// Is shown every agent at every instant at which the network jumps; nothing when control is digital, since nothing is heard between samples
+    /// then.
+    pub jumps: Option<&'a mut dyn FnMut(NetworkJump<'_>)>,
+    /// Is handed every agent with its rates at every row, before the row is recorded; nothing when control is digital, where reference dynamics
+    /// have no rates.
+    pub moments: Option<&'a mut dyn FnMut(Moment<'_>)>,
+    /// Is handed every row when it is recorded.
+    pub rows: Option<&'a mut dyn RowSink>,
+    /// What agents told before t = 0, where that is not what they tell then: the messages of all, position and velocity each. The one entry that
+    /// changes a run.
+    pub told_before: Option<&'a [Vec<f64>]>,
 }
 
-/// The same, and lets `observers` look at every step.
-pub(crate) fn simulate_with(
+/// As [`simulate`], and lets `observers` look at the run.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_with(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    samples: &mut dyn FnMut(SampleTaken<'_>),
     observers: Observers<'_>,
 ) -> Result<Outcome, SetupError> {
     let mut shown = 0;
-    let Observers { mut watch, jump, moment, rows, before } = observers;
+    let Observers { samples, mut inside, jumps, moments, rows, told_before } = observers;
     let mut closed_loop = assembled(setup)?;
     setup.network.lasts_until(setup.time.end_s)?;
-    closed_loop.watch(samples);
-    if let (Some(control), true) = (&setup.control, watch.is_some()) {
+    if let Some(samples) = samples {
+        closed_loop.watch(samples);
+    }
+    if let (Some(control), true) = (&setup.control, inside.is_some()) {
         closed_loop.trace(control);
     }
     let (ports, entries) = closed_loop.ports();
@@ -128,22 +86,22 @@ pub(crate) fn simulate_with(
     let network = if setup.control.is_some() { &silent } else { &setup.network };
     let mut integrator =
         Integrator::new(network, &setup.solver, end_s, closed_loop.start(), ports, entries, forcing(setup));
-    if let Some(before) = before {
+    if let Some(before) = told_before {
         integrator.told_before(before);
     }
     let mut recorder = Recorder::new(setup, &closed_loop, rows);
-    let mut jumps = jump.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
+    let mut jumps = jumps.map(|jump| JumpWatch::new(&mut closed_loop, setup.agents.len(), jump));
     let mut limits = LimitWatch::new(setup);
     let mut pace = Pace::new(setup);
-    let mut moments = moment.map(|each| (Moments::new(setup, &closed_loop), each));
+    let mut moments = moments.map(|each| (Moments::new(setup, &closed_loop), each));
 
     let ending = loop {
         match integrator.advance(&mut closed_loop) {
             Ok(None) => break Ending::Completed,
             Ok(Some(step)) => {
                 closed_loop.reached(step.end_s);
-                if let Some(watch) = &mut watch {
-                    show(&mut integrator, &mut closed_loop, step, &mut shown, *watch);
+                if let Some(inside) = &mut inside {
+                    show(&mut integrator, &mut closed_loop, step, &mut shown, *inside);
                 }
                 if let Some((moments, each)) = &mut moments {
                     moments.show(&mut integrator, &mut closed_loop, step, *each);

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::cases::{cases, setup};
 use forwardstep_sim::{
-    Actuators, Control, NetworkJump, Sensors, Setup, Signal, VelocitySensor, simulate, simulate_jumps,
+    Actuators, Control, NetworkJump, Observers, Sensors, Setup, Signal, VelocitySensor, simulate, simulate_with,
 };
 
 /// All Lagrangian cases, then a run of every other kind of system, continuous and sampled.
@@ -87,7 +87,12 @@ fn digest_a_run_whose_jumps_are_looked_at_has_the_same_bits() {
             assert!(state.is_none_or(|last| last < at), "{name}: {last:?} {at:?}", last = state);
             state = Some(at);
         };
-        let looked_at = simulate_jumps(&setup, &mut |_| ControlFlow::Continue(()), &mut look).unwrap();
+        let looked_at = simulate_with(
+            &setup,
+            &mut |_| ControlFlow::Continue(()),
+            Observers { jumps: Some(&mut look), ..Observers::default() },
+        )
+        .unwrap();
         let plain = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
         for (one, other) in looked_at.recording.columns.iter().zip(&plain.recording.columns) {
             assert!(one.values.iter().map(|v| v.to_bits()).eq(other.values.iter().map(|v| v.to_bits())), "{name}");

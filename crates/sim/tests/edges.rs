@@ -16,8 +16,8 @@ use forwardstep_sim::network::NetworkError;
 use forwardstep_sim::quantity::Requirement;
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    ClippedSamples, Control, Exchange, Known, Network, Outcome, Sensors, Setup, SetupError, Signal, VelocitySensor,
-    simulate, simulate_samples,
+    ClippedSamples, Control, Exchange, Known, Network, Observers, Outcome, Sensors, Setup, SetupError, Signal,
+    VelocitySensor, simulate, simulate_with,
 };
 
 fn edge(from: usize, to: usize) -> Edge {
@@ -253,10 +253,17 @@ fn commands_that_limits_change_are_counted_for_every_kind_of_agent() {
         let torques = columns(&free, Signal::Torque).concat();
         let limit = 0.5 * torques.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
         let (mut samples, mut at_limit) = (0, 0);
-        let limited = simulate_samples(&with(limit, 1e9), &mut |_| ControlFlow::Continue(()), &mut |sample| {
-            samples += 1;
-            at_limit += u64::from(sample.command.iter().any(|tau| tau.abs() == limit));
-        });
+        let limited = simulate_with(
+            &with(limit, 1e9),
+            &mut |_| ControlFlow::Continue(()),
+            Observers {
+                samples: Some(&mut |sample| {
+                    samples += 1;
+                    at_limit += u64::from(sample.command.iter().any(|tau| tau.abs() == limit));
+                }),
+                ..Observers::default()
+            },
+        );
         let clipped = limited.unwrap().statistics.clipped.unwrap();
         assert_eq!(clipped, ClippedSamples { samples, torque: at_limit, rate: 0 });
         assert!(at_limit > 0 && at_limit < samples, "{clipped:?}");

@@ -12,7 +12,9 @@ use forwardstep_sim::coupling::Coupling;
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::Trajectory;
-use forwardstep_sim::{ChainModel, ChainStep, Ending, Failures, Outcome, Setup, SetupError, Signal, simulate};
+use forwardstep_sim::{
+    ChainModel, ChainStep, Ending, Failures, Observers, Outcome, Setup, SetupError, Signal, simulate, simulate_with,
+};
 
 const HZ: f64 = 500.0;
 
@@ -74,7 +76,12 @@ fn senders_count_again_as_soon_as_something_newer_arrives() {
             before = Some(counts);
         }
     };
-    forwardstep_sim::simulate_samples(&setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { samples: Some(&mut watch), ..Observers::default() },
+    )
+    .unwrap();
     let share = f64::from(heard[0]) / f64::from(heard[0] + heard[1]);
     assert!((0.4..0.6).contains(&share) && changes >= 8, "{heard:?}, {changes}");
 }

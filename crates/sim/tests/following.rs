@@ -15,7 +15,7 @@ use forwardstep_sim::leader::{Following, FollowingDesign, Leader, Leading};
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::trajectory::{Path, Sinusoid, Trajectory};
-use forwardstep_sim::{Adaptive, AgentSetup, Method, Outcome, Setup, Signal, simulate, simulate_samples};
+use forwardstep_sim::{Adaptive, AgentSetup, Method, Observers, Outcome, Setup, Signal, simulate, simulate_with};
 
 fn at_1_khz(mut setup: Setup) -> Setup {
     setup.time.record_every_s = 1e-3;

@@ -12,8 +12,8 @@ use forwardstep_core::robot::tree::Uncertain;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::trajectory::{Path, Spline, Trajectory};
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Ending, Known, Law, Method, Network, RobotSetup, Setup, SetupError, Signal, Start, recipe,
-    simulate,
+    Adaptive, AgentSetup, Ending, Known, Law, Method, Network, Observers, RobotSetup, Setup, SetupError, Signal, Start,
+    recipe, simulate, simulate_with,
 };
 
 /// Every robot of Section II-B that is shipped, with ϑ̂(0) = 0 or with the true parameters.
@@ -205,11 +205,18 @@ fn digest_a_recipe_of_a_robot_that_tracks_has_the_bits_of_the_simulator() {
     setup.solver.method = Method::Fixed { step_s: 0.001 };
     let mut controller = recipe(&setup, 0).unwrap().build().unwrap();
     let mut samples = 0;
-    let outcome = forwardstep_sim::simulate_samples(&setup, &mut |_| ControlFlow::Continue(()), &mut |taken| {
-        controller.step(taken.now_s, taken.measured, taken.inbox).unwrap();
-        assert_eq!(controller.command(), taken.command, "sample {}", taken.sample);
-        samples += 1;
-    });
+    let outcome = simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers {
+            samples: Some(&mut |taken| {
+                controller.step(taken.now_s, taken.measured, taken.inbox).unwrap();
+                assert_eq!(controller.command(), taken.command, "sample {}", taken.sample);
+                samples += 1;
+            }),
+            ..Observers::default()
+        },
+    );
     assert_eq!((outcome.unwrap().ending, samples), (Ending::Completed, 200));
 }
 

@@ -18,8 +18,8 @@ use forwardstep_sim::delay::{Delay, Loss, PacketLink};
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
-    Adaptive, AgentSetup, Ending, Outcome, Sensors, Setup, SetupError, Signal, Start, TimeSpan, VelocitySensor, recipe,
-    recipes, simulate_samples,
+    Adaptive, AgentSetup, Ending, Observers, Outcome, Sensors, Setup, SetupError, Signal, Start, TimeSpan,
+    VelocitySensor, recipe, recipes, simulate_with,
 };
 
 /// Exact in binary, so that rows of the recording and samples are the same instants.
@@ -50,17 +50,24 @@ struct Logged {
 /// A run, and what every agent took and gave, sample by sample.
 fn logged(setup: &Setup) -> (Outcome, Vec<Vec<Logged>>) {
     let mut log: Vec<Vec<Logged>> = setup.agents.iter().map(|_| Vec::new()).collect();
-    let outcome = simulate_samples(setup, &mut |_| ControlFlow::Continue(()), &mut |taken| {
-        assert_eq!(taken.sample as usize, log[taken.agent].len());
-        log[taken.agent].push(Logged {
-            now_s: taken.now_s,
-            measured: taken.measured.to_vec(),
-            message: taken.message.to_vec(),
-            degree: taken.inbox.degree,
-            sums: taken.inbox.sums.to_vec(),
-            command: taken.command.to_vec(),
-        });
-    });
+    let outcome = simulate_with(
+        setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers {
+            samples: Some(&mut |taken| {
+                assert_eq!(taken.sample as usize, log[taken.agent].len());
+                log[taken.agent].push(Logged {
+                    now_s: taken.now_s,
+                    measured: taken.measured.to_vec(),
+                    message: taken.message.to_vec(),
+                    degree: taken.inbox.degree,
+                    sums: taken.inbox.sums.to_vec(),
+                    command: taken.command.to_vec(),
+                });
+            }),
+            ..Observers::default()
+        },
+    );
     let outcome = outcome.unwrap();
     assert_eq!(outcome.ending, Ending::Completed);
     (outcome, log)

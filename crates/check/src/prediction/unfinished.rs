@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use forwardstep_sim::{Ending, Outcome, Progress, Recording, Setup, SetupError, TimeSpan, simulate, simulate_told};
+use forwardstep_sim::{
+    Ending, Observers, Outcome, Progress, Recording, Setup, SetupError, TimeSpan, simulate, simulate_with,
+};
 use thiserror::Error;
 
 /// Why the reference dynamics alone were not simulated to the end.
@@ -65,7 +67,9 @@ pub(super) fn simulated(
         if *work < 0.0 { ControlFlow::Break(()) } else { observer(progress) }
     };
     let mut run = |ideal: &Setup| match before {
-        Some(before) => simulate_told(ideal, before, &mut counting),
+        Some(before) => {
+            simulate_with(ideal, &mut counting, Observers { told_before: Some(before), ..Observers::default() })
+        }
         None => simulate(ideal, &mut counting),
     };
     let outcome = match run(ideal) {

@@ -35,7 +35,9 @@ use std::ops::ControlFlow;
 
 use forwardstep_core::LengthError;
 use forwardstep_sim::recording::{Outcome, Signal};
-use forwardstep_sim::{Ending, InputJump, NetworkJump, Progress, Setup, SetupError, input_orders, simulate_jumps};
+use forwardstep_sim::{
+    Ending, InputJump, NetworkJump, Observers, Progress, Setup, SetupError, input_orders, simulate_with,
+};
 use thiserror::Error;
 
 pub use covered::{Covered, NotCovered};
@@ -178,7 +180,11 @@ pub fn smoothness(
     }
     let said = agents.iter().map(Result::is_ok).collect();
     let mut seen = Seen { expansions, said, ..Seen::default() };
-    let outcome = simulate_jumps(setup, observer, &mut |jump| seen.look(&jump))?;
+    let outcome = simulate_with(
+        setup,
+        observer,
+        Observers { jumps: Some(&mut |jump| seen.look(&jump)), ..Observers::default() },
+    )?;
     if let Some((agent, t_s, trouble)) = seen.trouble {
         return Err(match trouble {
             Trouble::Length(error) => error.into(),

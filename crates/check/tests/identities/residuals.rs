@@ -19,7 +19,7 @@ use forwardstep_sim::graph::Weight;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Adaptive, Exchange, PassivityFilterLaw, Setup, SpacecraftModel, ThrustKind, simulate, simulate_moments,
+    Adaptive, Exchange, Observers, PassivityFilterLaw, Setup, SpacecraftModel, ThrustKind, simulate, simulate_with,
 };
 
 use super::families::own_start;
@@ -28,7 +28,12 @@ use crate::common::{arm, edge, kinds, noise, setup};
 /// The run of a setup against what is derived from another, which is the same unless something is to be noticed.
 fn held_against(run: &Setup, derived: &Setup) -> Vec<Residual> {
     let mut residuals = Residuals::of(derived).unwrap();
-    simulate_moments(run, &mut |_| ControlFlow::Continue(()), &mut |moment| residuals.look(moment)).unwrap();
+    simulate_with(
+        run,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { moments: Some(&mut |moment| residuals.look(moment)), ..Observers::default() },
+    )
+    .unwrap();
     residuals.found().into_iter().flat_map(|(_, found)| found).collect()
 }
 
@@ -197,7 +202,12 @@ fn the_run_that_is_looked_at_has_the_same_bits() {
     let setup = arms(&[1.0, 2.0], Exchange::PositionVelocity);
     let plain = simulate(&setup, &mut |_| ControlFlow::Continue(())).unwrap();
     let mut count = 0_usize;
-    let looked = simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut |_| count += 1).unwrap();
+    let looked = simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { moments: Some(&mut |_| count += 1), ..Observers::default() },
+    )
+    .unwrap();
     assert_eq!(plain.recording, looked.recording);
     assert_eq!(count, 4 * plain.recording.t_s.len());
 }

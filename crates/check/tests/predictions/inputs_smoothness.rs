@@ -9,8 +9,8 @@ use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::Formulas;
 use forwardstep_sim::{
-    AgentSetup, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, NetworkJump, RotorcraftModel, Setup, Signal,
-    Start, ThrustKind, input_orders, simulate_jumps,
+    AgentSetup, ChainLaw, ChainModel, ChainStep, Estimate, Exchange, NetworkJump, Observers, RotorcraftModel, Setup,
+    Signal, Start, ThrustKind, input_orders, simulate_with,
 };
 
 use super::smoothness::{arms, compare, refused, roots};
@@ -171,7 +171,12 @@ fn varied(setup: &Setup) -> Vec<(usize, f64, Vec<Vec<f64>>)> {
             seen.push((jump.agent, jump.t_s, jump.inputs[0].derivatives.clone()));
         }
     };
-    simulate_jumps(setup, &mut |_| ControlFlow::Continue(()), &mut look).unwrap();
+    simulate_with(
+        setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { jumps: Some(&mut look), ..Observers::default() },
+    )
+    .unwrap();
     seen
 }
 

@@ -16,7 +16,9 @@ use forwardstep_core::robot::{Drives, Friction, SMOOTHING_LOSS};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Adaptive, AgentSetup, Axis, AxisUnit, Known, Network, RobotSetup, Setup, simulate_watched};
+use forwardstep_sim::{
+    Adaptive, AgentSetup, Axis, AxisUnit, Known, Network, Observers, RobotSetup, Setup, simulate_with,
+};
 
 use super::course::predicted;
 use super::{bound, sine};
@@ -152,7 +154,12 @@ fn v_may_grow_where_friction_is_dry_and_not_where_it_is_smooth() {
 /// The balances of a run at samples, whose terms add up to what V changes by.
 fn balances(setup: &Setup) -> Vec<InjectionBalance> {
     let mut watch = InjectionWatch::of(setup).unwrap();
-    simulate_watched(setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    simulate_with(
+        setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { inside: Some(&mut watch), ..Observers::default() },
+    )
+    .unwrap();
     let balances = watch.balances();
     assert_eq!(balances.len(), setup.agents.len());
     for balance in &balances {

@@ -9,8 +9,8 @@ use forwardstep_core::robot::PointMass;
 use forwardstep_sim::push::{Effect, Push};
 use forwardstep_sim::recording::SampleTaken;
 use forwardstep_sim::{
-    Adaptive, Control, Exchange, Inside, Known, Outcome, Place, Sensors, Setup, Signal, VelocitySensor, Watch,
-    recorded_columns, simulate_watched,
+    Adaptive, Control, Exchange, Inside, Known, Observers, Outcome, Place, Sensors, Setup, Signal, VelocitySensor,
+    Watch, recorded_columns, simulate_with,
 };
 
 use super::{agent, arm, constant, pulse, ring, rough_handling, run};
@@ -54,7 +54,12 @@ fn with(mut setup: Setup, change: impl FnOnce(&mut Control)) -> Setup {
 
 fn watched(setup: &Setup) -> (Outcome, Vec<InjectionBalance>) {
     let mut watch = InjectionWatch::of(setup).unwrap();
-    let outcome = simulate_watched(setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    let outcome = simulate_with(
+        setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { inside: Some(&mut watch), ..Observers::default() },
+    )
+    .unwrap();
     course_adds_up(&watch);
     (outcome, watch.balances())
 }
@@ -127,7 +132,12 @@ fn the_course_of_what_is_put_in_has_all_agents_at_one_time() {
     let mut own = columns.iter().filter(|column| column.agent == 0);
     let lyapunov = own.position(|column| column.signal == Signal::Lyapunov).unwrap();
     let mut ends = Ends { watch: InjectionWatch::of(&setup).unwrap(), lyapunov, steps: Vec::new() };
-    simulate_watched(&setup, &mut |_| ControlFlow::Continue(()), &mut ends).unwrap();
+    simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { inside: Some(&mut ends), ..Observers::default() },
+    )
+    .unwrap();
     let course = ends.watch.course();
     assert!(course.t_s.len() > 100 && ends.steps.len() > 2 * course.t_s.len());
     for (t_s, v) in course.t_s.iter().zip(&course.v_j).skip(1) {

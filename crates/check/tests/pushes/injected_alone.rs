@@ -9,8 +9,8 @@ use forwardstep_core::expression::Expression;
 use forwardstep_core::plant::Formulas;
 use forwardstep_sim::push::{Effect, Push};
 use forwardstep_sim::{
-    AgentSetup, ChainModel, Control, Ending, Exchange, Outcome, Sensors, Setup, Start, ThrustKind, VelocitySensor,
-    simulate, simulate_watched,
+    AgentSetup, ChainModel, Control, Ending, Exchange, Observers, Outcome, Sensors, Setup, Start, ThrustKind,
+    VelocitySensor, simulate, simulate_with,
 };
 
 use super::{constant, ring};
@@ -20,7 +20,12 @@ use crate::common::kinds::{blind_mass, cascade, chain, planar_tip, rest_at, spac
 fn watched(setup: &Setup) -> (Outcome, Vec<InjectionBalance>) {
     forwardstep_sim::validate(setup).unwrap();
     let mut watch = InjectionWatch::of(setup).unwrap();
-    let outcome = simulate_watched(setup, &mut |_| ControlFlow::Continue(()), &mut watch).unwrap();
+    let outcome = simulate_with(
+        setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { inside: Some(&mut watch), ..Observers::default() },
+    )
+    .unwrap();
     super::injected::course_adds_up(&watch);
     (outcome, watch.balances())
 }

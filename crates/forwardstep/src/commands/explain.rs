@@ -9,7 +9,7 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::{Ending, simulate_moments};
+use forwardstep::sim::{Ending, Observers, simulate_with};
 
 use super::patience::{LOOKING, Patience};
 use super::progress::Bar;
@@ -56,7 +56,12 @@ fn along(scenario: &Scenario, json: bool, console: &mut Console) -> Result<Statu
         bar.update(progress);
         stop.flow()
     };
-    let outcome = simulate_moments(setup, &mut observer, &mut |moment| residuals.look(moment)).map_err(refused)?;
+    let outcome = simulate_with(
+        setup,
+        &mut observer,
+        Observers { moments: Some(&mut |moment| residuals.look(moment)), ..Observers::default() },
+    )
+    .map_err(refused)?;
     bar.clear();
     if outcome.ending != Ending::Completed {
         remark(ending_sentence(setup, &outcome.ending));

@@ -14,7 +14,7 @@ use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shapes::Shapes;
 use forwardstep::io::shown;
 use forwardstep::sim::{
-    Ending, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_into,
+    Ending, Observers, Outcome, Progress, Recording, Statistics, Watch, recorded_columns, simulate, simulate_with,
 };
 
 use super::growing::followed;
@@ -153,7 +153,11 @@ impl Job<'_> {
             remark(format_args!("The page grows while the run goes on, from its first second on: {}", shown(&page)));
         }
         let outcome = followed(self.writing.follow, folder, self.kinds, self.promise, || {
-            simulate_into(&self.scenario.setup, &mut observer, balance, journal)
+            simulate_with(
+                &self.scenario.setup,
+                &mut observer,
+                Observers { inside: balance, rows: Some(journal), ..Observers::default() },
+            )
         });
         bar.clear();
         outcome.map_err(|error| complain(&Plain::new(error)))

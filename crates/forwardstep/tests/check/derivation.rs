@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use forwardstep::check::derivation::residual::{Missing, Residual, Residuals};
 use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario};
-use forwardstep::sim::{Moment, RecordAt, simulate_moments};
+use forwardstep::sim::{Moment, Observers, RecordAt, simulate_with};
 use serde_json::Value;
 
 use super::{TWO, with};
@@ -158,7 +158,12 @@ fn every_identity_of_every_shipped_scenario_holds_along_its_run() {
             rows += 1;
             residuals.look(moment);
         };
-        simulate_moments(&setup, &mut |_| ControlFlow::Continue(()), &mut look).unwrap();
+        simulate_with(
+            &setup,
+            &mut |_| ControlFlow::Continue(()),
+            Observers { moments: Some(&mut look), ..Observers::default() },
+        )
+        .unwrap();
         assert!(rows >= 30 * setup.agents.len(), "{}: {rows}", shipped.name);
         let found: Vec<Residual> = residuals.found().into_iter().flat_map(|(_, found)| found).collect();
         let broken: Vec<_> = found.iter().filter(|one| one.holds() == Some(false)).collect();

@@ -149,9 +149,16 @@ fn first_messages(design: FollowingDesign) -> (Setup, Vec<(usize, u64, Vec<f64>)
     let mut first = Vec::new();
     setup.time.end_s = 0.005;
     let setup = sampled(setup, 500.0);
-    simulate_samples(&setup, &mut |_| ControlFlow::Continue(()), &mut |sample| {
-        first.push((sample.agent, sample.sample, sample.message.to_vec()));
-    })
+    simulate_with(
+        &setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers {
+            samples: Some(&mut |sample| {
+                first.push((sample.agent, sample.sample, sample.message.to_vec()));
+            }),
+            ..Observers::default()
+        },
+    )
     .unwrap();
     (setup, first)
 }

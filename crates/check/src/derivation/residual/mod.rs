@@ -106,7 +106,7 @@ impl fmt::Display for Missing {
     }
 }
 
-/// Evaluates the identities of all designs of a setup along its run; see [`forwardstep_sim::simulate_moments`].
+/// Evaluates the identities of all designs of a setup along its run; see [`forwardstep_sim::simulate_with`].
 pub struct Residuals<'a> {
     designs: Vec<Design<'a>>,
     /// The design of each agent.
