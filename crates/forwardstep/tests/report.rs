@@ -283,10 +283,14 @@ fn a_folder_holds_all_that_went_into_its_run() {
     }
 
     // What an earlier run left goes, unless somebody changed it.
-    fs::write(path.join("again/inputs/tables/edges.csv"), "mine now").unwrap();
+    let edges = path.join("again/inputs/tables/edges.csv");
+    fs::write(&edges, "mine now").unwrap();
+    let refused = stderr(&forwardstep(&folder, &["run", "first-order", "--out", "again", "--force"]).code(2));
+    assert!(refused.contains("inputs/tables/edges.csv is not as the run in that folder wrote it"), "{refused}");
+    fs::rename(&edges, path.join("again/inputs/mine.csv")).unwrap();
     forwardstep(&folder, &["run", "first-order", "--out", "again", "--force"]).success();
     let names: Vec<_> = contents(&path.join("again")).into_keys().filter(|name| name.contains("inputs")).collect();
-    assert_eq!(names, ["inputs/tables/edges.csv"]);
+    assert_eq!(names, ["inputs/mine.csv"]);
 }
 
 /// The text of a page before its numbers.

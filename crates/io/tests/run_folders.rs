@@ -171,3 +171,34 @@ fn regress_a_run_whose_folder_was_renamed_leaves_the_next_of_that_name_alone() {
     assert_eq!(RunFolder::is_in_use(&name), Some(true));
     assert!(name.join("summary.json").is_file());
 }
+
+#[test]
+fn regress_copies_of_inputs_that_were_edited_are_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scenario, out) = (folder.path().join("mine/carts.toml"), folder.path().join("out"));
+    for (file, text) in [
+        ("robots/cart.urdf", CART),
+        ("mine/carts.toml", CARTS),
+        ("mine/edges.csv", "from,to\ncart-1,cart-2\ncart-2,cart-1\n"),
+    ] {
+        let path = folder.path().join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    run(&scenario, &out);
+    assert!(RunFolder::create(&out, true).is_ok());
+    let other_copy = r#"{"format": 1, "files": [{"name": "edges.csv", "file": "inputs/other.csv"}]}"#;
+    for (file, text) in
+        [("inputs/edges.csv", "mine"), ("inputs/outside/cart.urdf", "mine"), ("inputs/manifest.json", other_copy)]
+    {
+        let path = out.join(file);
+        let before = fs::read(&path).unwrap();
+        fs::write(&path, text).unwrap();
+        match RunFolder::create(&out, true) {
+            Err(OutputError::Changed { path: changed }) => assert_eq!(changed, path),
+            other => panic!("{file}: {other:?}"),
+        }
+        fs::write(&path, before).unwrap();
+    }
+    assert!(RunFolder::create(&out, true).is_ok());
+}

@@ -17,6 +17,8 @@ use crate::status::Status;
 
 /// Reading and drawing take this share of the time at most, one in so many.
 const SHARE: u32 = 4;
+/// A run claims its folder sooner than that after it has made it.
+const FIRST: Duration = Duration::from_secs(2);
 /// Where the system cannot tell whether a run writes, one whose journal has not grown for so long has ended.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Whoever asks it to stop does not wait for long.
@@ -73,6 +75,12 @@ impl<'f> Growth<'f> {
             (self.length, self.grew) = (length, Instant::now());
         }
         let grows = || length.is_some() && self.grew.elapsed() < PATIENCE;
-        self.folder.is_dir() && RunFolder::is_in_use(self.folder).unwrap_or_else(grows)
+        self.folder.is_dir() && (RunFolder::is_in_use(self.folder).unwrap_or_else(grows) || self.begins())
+    }
+
+    /// Whether the folder may be that of a run which has just made it, and has not claimed it yet.
+    fn begins(&self) -> bool {
+        let is_empty = || self.folder.read_dir().is_ok_and(|mut entries| entries.next().is_none());
+        self.grew.elapsed() < FIRST && is_empty()
     }
 }

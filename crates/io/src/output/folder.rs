@@ -9,7 +9,7 @@ use super::claim::{Claim, Stands};
 use super::comparison::{DOCUMENT, PAGE};
 use super::disk::{Disk, DiskFile, SystemDisk};
 use super::error::{Action, EncodeError, OutputError};
-use super::journal::JOURNAL;
+use super::journal::{self, JOURNAL};
 use super::{earlier, growing, inputs};
 use crate::scenario::inputs::INPUTS;
 use crate::scenario::run_folder::MANIFEST;
@@ -97,16 +97,17 @@ impl RunFolder {
             }
         }
         folder.claim = Claim::of(path)?;
-        if !is_empty(path, false)? {
-            if !force {
-                let replaceable = may_be_replaced(path).is_ok();
-                // A run that ended keeps what its tables have not beside them.
-                let cut_off = path.join(JOURNAL).is_file() && !path.join(SEAL).exists();
-                return Err(OutputError::FolderNotEmpty { path: path.clone(), replaceable, cut_off });
-            }
-            may_be_replaced(path)?;
+        let is_empty = is_empty(path, false)?;
+        if !is_empty && !force {
+            let replaceable = may_be_replaced(path).is_ok();
+            // A run that ended keeps what its tables have not beside them.
+            let cut_off = !path.join(SEAL).exists() && journal::head(&path.join(JOURNAL)).is_some();
+            return Err(OutputError::FolderNotEmpty { path: path.clone(), replaceable, cut_off });
         }
         in_the_way(path, FILES.into_iter().chain([JOURNAL, PAGE, DOCUMENT]))?;
+        if !is_empty {
+            may_be_replaced(path)?;
+        }
         folder.probe()?;
         Ok(folder)
     }
@@ -174,9 +175,17 @@ impl RunFolder {
         }
     }
 
+    /// Refuses where a file of somebody else stands under the name of one that will be written here in the place of an earlier run's.
+    ///
+    /// # Errors
+    /// [`OutputError::Changed`] with the file, [`OutputError::NotOfARun`] where no run wrote the folder.
+    pub(super) fn keeps_nothing(&self) -> Result<(), OutputError> {
+        earlier::may_be_replaced(&self.path)
+    }
+
     /// Starts to write files into it.
     pub(crate) fn stage(&self) -> Staging<'_> {
-        Staging { folder: self, names: Vec::new() }
+        Staging { folder: self, names: Vec::new(), names_files: false }
     }
 
     /// Removes the folders between this one and a file of it that are empty.
@@ -278,6 +287,9 @@ pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) ->
 pub(crate) struct Staging<'f> {
     folder: &'f RunFolder,
     names: Vec<String>,
+    /// Whether the seal of an earlier run is gone and files get their names. If that fails, the new seal under its temporary name says that what
+    /// stands there is a run's.
+    names_files: bool,
 }
 
 impl Staging<'_> {
@@ -333,6 +345,7 @@ impl Staging<'_> {
             }
         };
         remove(SEAL)?;
+        self.names_files = true;
         let is_old = |name: &str| !self.names.iter().any(|new| new == name);
         for name in FILES.into_iter().chain(earlier.iter().map(String::as_str)).filter(|name| is_old(name)) {
             remove(name)?;
@@ -372,7 +385,7 @@ impl Drop for Staging<'_> {
         if self.folder.is_elsewhere() {
             return;
         }
-        for name in &self.names {
+        for name in self.names.iter().filter(|name| !(self.names_files && *name == SEAL)) {
             let _ = self.folder.disk().remove_file(&self.folder.partial(name));
             self.folder.remove_empty_above(name);
         }

@@ -6,11 +6,13 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use forwardstep_check::Report;
-use forwardstep_sim::{Ending, Outcome, Recording, RowSink, Statistics, recorded_columns, simulate, simulate_into};
+use forwardstep_sim::{
+    Ending, Observers, Outcome, Recording, RowSink, Statistics, recorded_columns, simulate, simulate_with,
+};
 
 use forwardstep_io::SourceText;
 use forwardstep_io::output::journal::{ReadJournal, read};
-use forwardstep_io::output::{Journal, JournalError, Metrics, Remark, RunFolder, RunRecord, SavedRun};
+use forwardstep_io::output::{Journal, JournalError, Metrics, OutputError, Remark, RunFolder, RunRecord, SavedRun};
 use forwardstep_io::scenario::kinds::Kinds;
 use forwardstep_io::scenario::{Scenario, read_scenario};
 
@@ -70,7 +72,12 @@ fn journaled(carts: &(Scenario, Report), folder: &RunFolder, ends: bool) -> (Out
     let start = nothing(carts);
     let journal = Journal::new(folder, record(carts, &start), || Duration::ZERO).every(Duration::ZERO);
     let mut sink = Counted { journal, rows: 0, kept: 0 };
-    let outcome = simulate_into(&carts.0.setup, &mut |_| ControlFlow::Continue(()), None, &mut sink).unwrap();
+    let outcome = simulate_with(
+        &carts.0.setup,
+        &mut |_| ControlFlow::Continue(()),
+        Observers { rows: Some(&mut sink), ..Observers::default() },
+    )
+    .unwrap();
     if ends {
         let record = record(carts, &outcome);
         sink.journal.end(&record, Metrics::of(record.setup, &record.outcome.recording, None, None));
@@ -321,4 +328,47 @@ fn a_journal_with_damage_stays_where_it_is() {
     // The summary that stands beside it now is the newer.
     let again = SavedRun::open(path).unwrap();
     assert_eq!((same_rows(&again, &outcome, &carts), again.unfinished()), (rows, None));
+}
+
+/// A run that was cut off wrote its journal and no more: `report` and `--force` deleted tables beside it, and took any file of its name for one.
+#[test]
+fn regress_files_of_others_beside_a_journal_are_kept() {
+    let (carts, folder) = (carts(), tempfile::tempdir().unwrap());
+    let path = folder.path();
+    fs::write(path.join(JOURNAL), journal(false).0).unwrap();
+    assert!(matches!(RunFolder::create(path, false), Err(OutputError::FolderNotEmpty { cut_off: true, .. })));
+    fs::create_dir(path.join("inputs")).unwrap();
+    for name in [
+        "scenario.toml",
+        "trajectory.parquet",
+        "trajectory.csv",
+        "packets.csv",
+        "phases.csv",
+        "holds.csv",
+        "shapes.json",
+        "inputs/manifest.json",
+    ] {
+        let file = path.join(name);
+        fs::write(&file, "mine").unwrap();
+        let run = SavedRun::look_with(path, &Kinds::shipped()).unwrap();
+        let reported = run.write_report(&run.record(&carts.1, None, &[])).map(|_| ());
+        for refused in [reported, RunFolder::create(path, true).map(|_| ())] {
+            assert!(matches!(&refused, Err(OutputError::Changed { path }) if *path == file), "{name}: {refused:?}");
+        }
+        assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+        fs::remove_file(&file).unwrap();
+    }
+    // What the run would write itself may stand there, and so may what a growing page left.
+    fs::write(path.join("scenario.toml"), carts.0.source.text()).unwrap();
+    fs::write(path.join("report.html"), "running").unwrap();
+    assert!(RunFolder::create(path, true).is_ok());
+    for head in ["", "hello", "forwardstep rows"] {
+        fs::write(path.join(JOURNAL), head).unwrap();
+        assert!(matches!(RunFolder::create(path, true), Err(OutputError::NotOfARun { .. })), "{head}");
+        assert!(matches!(RunFolder::create(path, false), Err(OutputError::FolderNotEmpty { cut_off: false, .. })));
+    }
+    // A run that was killed while it wrote its summary had given no file its name yet.
+    fs::remove_file(path.join(JOURNAL)).unwrap();
+    fs::write(path.join(".summary.json.partial"), "{").unwrap();
+    assert!(matches!(RunFolder::create(path, true), Err(OutputError::NotOfARun { .. })));
 }

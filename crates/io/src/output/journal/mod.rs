@@ -34,6 +34,7 @@ use serde::{Deserialize, Serialize};
 
 use super::summary::Summary;
 
+pub(crate) use read::head;
 pub use read::{JournalError, ReadJournal, read};
 pub use write::Journal;
 

@@ -1,12 +1,14 @@
 //! Reading a journal: the longest part of it from the beginning that holds.
 
-use std::io::{self, Read};
+use std::io::{self, BufReader, Read};
+use std::path::Path;
 
 use thiserror::Error;
 
 use super::super::summary::Summary;
 use super::super::table::NamedColumns;
 use super::{Chain, END, FORMAT, FRAME_HEAD, HEAD, Head, MAGIC, MOST_FRAME_BYTES, MOST_TEXT_BYTES, ROWS};
+use crate::files::open_file;
 
 /// Why no rows can be read from a journal.
 #[derive(Debug, Error)]
@@ -42,11 +44,8 @@ pub struct ReadJournal {
     pub left_out: u64,
 }
 
-/// Reads a journal of `length` bytes. What is behind a frame that does not hold is left out, whatever it says.
-///
-/// # Errors
-/// [`JournalError`] where nothing of it can be read. No bytes panic, and a length that is not true takes no memory.
-pub fn read(mut input: impl Read, length: u64) -> Result<ReadJournal, JournalError> {
+/// What a journal of `length` bytes begins with, and the frames behind it.
+fn opened<R: Read>(mut input: R, length: u64) -> Result<(Head, Frames<R>), JournalError> {
     let mut opening = [0; 20];
     let opened = input.read_exact(&mut opening);
     let (magic, format) = opening.split_at(MAGIC.len());
@@ -60,10 +59,25 @@ pub fn read(mut input: impl Read, length: u64) -> Result<ReadJournal, JournalErr
         return Err(JournalError::Newer { found });
     }
     let mut frames = Frames { input, left: length.saturating_sub(opening.len() as u64), chain: Chain::start(&opening) };
-    let head: Head = match frames.next(0) {
-        Some((HEAD, text)) => serde_json::from_slice(&text).map_err(|_| JournalError::Head)?,
-        _ => return Err(JournalError::Head),
-    };
+    match frames.next(0) {
+        Some((HEAD, text)) => Ok((serde_json::from_slice(&text).map_err(|_| JournalError::Head)?, frames)),
+        _ => Err(JournalError::Head),
+    }
+}
+
+/// What the rows of the journal at `path` belong to; nothing where it is no journal, or its head does not hold.
+pub(crate) fn head(path: &Path) -> Option<Head> {
+    let file = open_file(path).ok()?;
+    let length = file.metadata().ok()?.len();
+    opened(BufReader::new(file), length).ok().map(|(head, _)| head)
+}
+
+/// Reads a journal of `length` bytes. What is behind a frame that does not hold is left out, whatever it says.
+///
+/// # Errors
+/// [`JournalError`] where nothing of it can be read. No bytes panic, and a length that is not true takes no memory.
+pub fn read(input: impl Read, length: u64) -> Result<ReadJournal, JournalError> {
+    let (head, mut frames) = opened(input, length)?;
     let mut columns: NamedColumns = head.columns.iter().map(|name| (name.clone(), Vec::new())).collect();
     let row_bytes = 8 * columns.len();
     if row_bytes == 0 {
