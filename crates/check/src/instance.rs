@@ -47,8 +47,7 @@ pub(crate) fn design(setup: &Setup) -> Option<(Design, RootSet)> {
         let alone = *integrators == 0 && desired.coupling.is_none() && desired.heard.is_empty();
         return alone.then(|| (Design::Tracking, roots.clone()));
     }
-    let same = DesiredPolynomial::Roots { integrators: 0, roots: roots.clone() };
-    let agrees = *integrators == 1 && desired.coupling.as_ref() == Some(&same) && hears(desired, roots);
+    let agrees = *integrators == 1 && couples_by(desired, roots) && hears(desired, roots);
     let design = match desired.written {
         WrittenIn::Measured => Design::Consensus,
         WrittenIn::X if roots.len() == 2 && lagrangian(setup) => Design::PureIntegral,
@@ -59,6 +58,13 @@ pub(crate) fn design(setup: &Setup) -> Option<(Design, RootSet)> {
 
 fn lagrangian(setup: &Setup) -> bool {
     setup.agents.iter().all(|agent| agent.robot.kind.lagrangian().is_some())
+}
+
+/// Whether B has these roots, in whatever order.
+fn couples_by(desired: &Desired, roots: &RootSet) -> bool {
+    let Some(DesiredPolynomial::Roots { integrators: 0, roots: own }) = &desired.coupling else { return false };
+    let product = |roots: &RootSet| Factors::written(roots).product();
+    own.len() == roots.len() && product(own) == product(roots)
 }
 
 /// Whether what is heard is α₀ x_j, or (α₀/κ₀)(p + κ₀) x_j.

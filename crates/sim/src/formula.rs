@@ -57,16 +57,14 @@ impl BoundedFormula {
         times_s(end_s).find_map(|t_s| Witness::outside(t_s, self.formula.enclose(Interval::point(t_s)), range))
     }
 
-    /// Its value, where one pass of interval arithmetic shows that it has one for ever, though t may be in it: 1 + 0 t. That of a
+    /// Its value, where one pass of exact interval arithmetic shows that it has one for ever, though t may be in it: 0.3 + 0 t. That of a
     /// formula without t may be no number.
     pub fn constant(&self) -> Option<f64> {
-        // No more than that: others have to see it, too.
-        let Interval { low, high } = self.formula.enclose(Interval { low: 0.0, high: f64::INFINITY });
         if self.formula.is_constant() {
-            // As a number: its bounds may be wider.
             return Some(self.formula.constant().map_or(f64::NAN, |number| number.value()));
         }
-        (low == high).then_some(low)
+        // No more than that: others have to see it, too.
+        self.formula.constant_over(Interval { low: 0.0, high: f64::INFINITY }).map(|number| number.value())
     }
 
     /// Where it has kinks until [`until_s`](Self::until_s), s, rising; none where they could not be told apart.

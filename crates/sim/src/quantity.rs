@@ -235,7 +235,9 @@ impl fmt::Display for QuantityError {
                 }
             }
             Requirement::Few { what, count, most } => {
-                let (count, most) = (about(count), number(most));
+                // Two digits must not say that it is not too many.
+                let count = Some(about(count)).filter(|count| count.0 > most).unwrap_or(Number(count));
+                let most = number(most);
                 write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted")
             }
         }

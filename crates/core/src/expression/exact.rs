@@ -7,7 +7,8 @@ use num_traits::{One, Zero};
 use super::float::whole;
 use super::interval::{Interval, Intervals};
 use super::number::enclosed;
-use super::{Algebra, Binary, Expression, Number, Unary};
+use super::operation::Operation;
+use super::{Algebra, Binary, Expression, Number, Step, Unary};
 
 /// Rational numbers with more bits than this are rounded outwards.
 const MOST_BITS: u64 = 4096;
@@ -28,6 +29,10 @@ impl Range {
             Range::Rational([low, high]) => Interval::new(enclosed(low).low, enclosed(high).high),
             Range::Rounded(within) => *within,
         }
+    }
+
+    fn one_number(&self) -> Option<Number> {
+        self.rational().filter(|[low, high]| low == high).map(|[number, _]| Number::rational(number))
     }
 
     fn rational(&self) -> Option<[BigRational; 2]> {
@@ -105,9 +110,25 @@ impl Expression {
         if self.variables() > 0 {
             return None;
         }
-        match self.fold(&mut Exact(Interval::UNDEFINED)) {
-            Range::Rational([low, high]) if low == high => Some(Number::rational(low)),
-            range => Number::enclosed(self.value(&[]), range.rounded()),
-        }
+        let range = self.fold(&mut Exact(Interval::UNDEFINED));
+        range.one_number().or_else(|| Number::enclosed(self.value(&[]), range.rounded()))
+    }
+
+    /// A sum or a difference of numbers that floating point has not to so many parts of the whole, as 0.1 + 0.2 − 0.3: what it is, and as what
+    /// it is computed.
+    pub fn cancels(&self, part: f64) -> Option<[f64; 2]> {
+        self.operations().into_iter().find_map(|operation| {
+            let Operation::Binary(function @ (Binary::Add | Binary::Subtract), [a, b]) = operation else { return None };
+            let sum = Expression { steps: [a, b, &[Step::Binary(function)]].concat() };
+            let exact = sum.constant()?.exact().filter(|_| sum.is_constant())?;
+            let exact = Number::rational(exact).value();
+            let computed = sum.value(&[]);
+            ((computed - exact).abs() > part * exact.abs()).then_some([exact, computed])
+        })
+    }
+
+    /// The one rational number that it is for all values of its variables within `range`, where one pass shows that: 0.3 + 0 t.
+    pub fn constant_over(&self, range: Interval) -> Option<Number> {
+        self.fold(&mut Exact(range)).one_number()
     }
 }

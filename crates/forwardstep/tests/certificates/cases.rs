@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::{certified, changed, checked, judged, python, root};
+use super::{certified, changed, checked, judged, judged_if_read, python, root};
 use crate::support::folder;
 
 fn case(name: &str) -> String {
@@ -99,6 +99,30 @@ fn regress_delays_that_never_change_are_constant_however_they_are_written() {
     // Doubles that programs print with seventeen digits.
     assert_eq!(judged(&text("[0.30000000000000004, 0.29999999999999999]"), "bounded-delays").1, "accepted");
     assert_eq!(is("[0.2, 0.3]").0, "not covered by the paper");
+    let piecewise = "delay.piecewise_constant = { times_s = [0, 1], values_s = [0.2, 0.2], period_s = 2 }";
+    let formula = |formula: &str| {
+        let text = text("[0.2, 0.2]").replace(piecewise, &format!("delay.formula_s = \"{formula}\""));
+        judged(&text, "common-first-root")
+    };
+    for stays in ["0.3 + 0*t", "(3*t - t - 2*t)*0 + 0.1 + 0.1", "0.3"] {
+        assert_eq!(formula(stays), ("holds".to_owned(), "accepted".to_owned()), "{stays}");
+    }
+    assert_eq!(formula("0.3 + 1e-9*sin(t)").0, "not covered by the paper");
+}
+
+#[test]
+fn regress_a_polynomial_is_its_roots_in_whatever_order() {
+    let beside = |roots: &str, id: &str| {
+        let coupling = format!("coupling_polynomial = {{ roots_per_s = {roots} }}");
+        judged_if_read(&changed("desired-dynamics", "coupling_polynomial = { roots_per_s = [1, 2] }", &coupling), id)
+    };
+    for same in ["[1, 2]", "[2, 1]"] {
+        assert_eq!(beside(same, "real-roots"), Some(("holds".to_owned(), "accepted".to_owned())), "{same}");
+    }
+    for other in ["[2, 2]", "[1, 3]", "[2]"] {
+        assert_eq!(beside(other, "real-roots"), None, "{other}");
+        assert_eq!(beside(other, "desired-dynamics").unwrap().0, "not shown", "{other}");
+    }
 }
 
 #[test]

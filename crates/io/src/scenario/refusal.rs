@@ -35,6 +35,9 @@ impl Document<'_> {
 pub(super) fn advice_on_quantity(error: &QuantityError) -> Option<String> {
     let text = match error.requirement {
         Requirement::Few { what: "samples", .. } => "sample more slowly, or let the run end sooner",
+        Requirement::Few { what: "packets", .. } => {
+            "take fewer links, a longer period or a shorter run; or is a unit of time mistaken? All of them are seconds"
+        }
         Requirement::Few { .. } => "is a unit of time mistaken? All of them are seconds",
         Requirement::Within { high, .. } if error.path.name() == "computation_delay_s" && error.value > high => {
             "a computation must be done before the next begins; sample more slowly, or compute faster"

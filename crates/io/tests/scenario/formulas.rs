@@ -80,6 +80,7 @@ fn mistakes_have_their_place() {
         ("2^(1/0)", 2..7, "the exponent has no finite value"),
         ("1e31*t", 0..4, "1e31 is too large a number"),
         ("1e-301*t", 0..6, "1e-301 has too many digits or too small an exponent"),
+        ("t + (0.1+0.2-0.3)*1e17", 0..22, "numbers in it cancel: what is 0 is computed as 5.551115123125783e-17"),
         (".", 0..1, "found \".\" in a formula where a number, `t`, a function or a parenthesis should stand"),
         ("1 + é", 4..6, "there is no `é` in a formula"),
     ];
