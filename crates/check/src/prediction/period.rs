@@ -64,10 +64,12 @@ pub enum NoPeriodRate {
         periods: usize,
     },
     /// The disagreement vanished within few periods.
-    #[error("the disagreement vanishes within {periods} periods, too few to see a factor")]
+    #[error("after {} too little of the disagreement is left to see a factor", common(*periods, *period_s))]
     Vanishes {
         /// How many.
         periods: usize,
+        /// How long one is, s.
+        period_s: f64,
     },
     /// The reference dynamics alone were not simulated to the end.
     #[error(transparent)]
@@ -78,7 +80,7 @@ pub enum NoPeriodRate {
 const ROWS: usize = 32;
 /// Periods of the first and of the longest attempt.
 const PERIODS: [usize; 2] = [16, 512];
-/// Times the horizon of the run that the longest attempt may cover, unless the first one does.
+/// Times the horizon of the run that the longest attempt may cover, unless the first one does more.
 const HORIZONS: f64 = 10.0;
 /// Columns of an agent on one axis, roughly, and how many numbers may be recorded.
 const COLUMNS: usize = 8;
@@ -117,11 +119,14 @@ pub fn period_rate_within(
     if recorded < periods {
         return Err(NoPeriodRate::TooLarge { agents });
     }
-    let most = most.min(recorded).min((HORIZONS * setup.time.end_s / period_s) as usize);
+    let (least, most) = (periods, most.min(recorded));
+    // Where that is not enough, so many periods are taken for one: their operator has the power of its eigenvalues.
+    let mut together = 1;
     loop {
+        let block_s = period_s * together as f64;
         alone.time = TimeSpan {
-            end_s: period_s * periods as f64,
-            record_every_s: period_s / ROWS as f64,
+            end_s: block_s * periods as f64,
+            record_every_s: block_s / ROWS as f64,
             record_at: forwardstep_sim::RecordAt::Intervals,
         };
         let recording = completed(&alone, None, &mut work, observer)?;
@@ -130,10 +135,24 @@ pub fn period_rate_within(
         let start = each.first().copied().unwrap_or(0.0);
         // The first is the start.
         let seen = each.iter().skip(1).take_while(|width| **width > FLOOR * start).count();
-        if seen < periods || each[periods] < FALLEN * start || 2 * periods > most {
-            return factor(&each[..=seen], &apart(&recording), period_s);
+        let ends = 2.0 * alone.time.end_s > HORIZONS * setup.time.end_s;
+        if seen < periods || each[periods] < FALLEN * start || ends {
+            return factor(&each[..=seen], &apart(&recording), period_s, together);
         }
-        periods *= 2;
+        if 2 * periods <= most {
+            periods *= 2;
+        } else {
+            together *= 2 * periods / least;
+            periods = least;
+        }
+    }
+}
+
+fn common(periods: usize, period_s: f64) -> String {
+    let rounded = (1e4 * period_s).round() * 1e-4;
+    match periods {
+        1 => format!("one common period of {rounded} s"),
+        periods => format!("{periods} common periods of {rounded} s"),
     }
 }
 
@@ -149,25 +168,27 @@ fn apart(recording: &Recording) -> Vec<DVector<f64>> {
     (0..(recording.t_s.len() - 1) / ROWS).map(|k| of_period(k * ROWS)).collect()
 }
 
-/// By the mean over the second half of what was seen, and by the largest eigenvalue that fits all periods.
-fn factor(widths: &[f64], apart: &[DVector<f64>], period_s: f64) -> Result<PeriodRate, NoPeriodRate> {
+/// By the mean over the second half of what was seen, and by the largest eigenvalue that fits all periods, so many of which are taken `together`.
+fn factor(widths: &[f64], apart: &[DVector<f64>], period_s: f64, together: usize) -> Result<PeriodRate, NoPeriodRate> {
     let seen = widths.len() - 1;
     let first = seen / 2;
     let periods = seen - first;
     if periods < 3 {
-        return Err(NoPeriodRate::Vanishes { periods: seen });
+        return Err(NoPeriodRate::Vanishes { periods: together * (seen + 1), period_s });
     }
     let total = libm::log(widths[seen] / widths[first]);
     // A fall within rounding is none.
     if total > -1e-6 {
-        return Err(NoPeriodRate::Stays { periods: seen });
+        return Err(NoPeriodRate::Stays { periods: together * seen });
     }
     let mean = libm::exp(total / periods as f64);
     let clear = widths.iter().take_while(|width| **width > FALLEN * widths[0]).count().min(apart.len());
     let factor = fitted(&apart[clear.saturating_sub(FITTED).max(1).min(clear)..clear], mean).unwrap_or(mean);
     let off = |pair: &[f64]| (pair[1] / pair[0] / factor - 1.0).abs();
     let wavers = widths[first..].windows(2).map(off).fold(0.0, f64::max);
-    Ok(PeriodRate { period_s, factor, rate_per_s: libm::log(factor) / period_s, wavers, periods })
+    let rate_per_s = libm::log(factor) / (period_s * together as f64);
+    let factor = libm::pow(factor, 1.0 / together as f64);
+    Ok(PeriodRate { period_s, factor, rate_per_s, wavers, periods: together * periods })
 }
 
 /// Periods that are fitted at most, the last ones, and by how many eigenvalues.
