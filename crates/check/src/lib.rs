@@ -40,10 +40,10 @@ pub use fixed::NotFixed;
 pub use footing::{Footing, Ground};
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
-    AgreementBound, Along, AxisBound, FastestDamping, Finding, Hold, Injection, InjectionBalance, InjectionCourse,
-    InjectionWatch, LoadReached, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE, NoReferenceGains, Over,
-    PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains, SamplingMargin,
-    StaticLoad, Trial, WholeLoop, along, fastest_damping, mean_power_w, practical,
+    AgreementBound, Along, AxisBound, ClippedCommands, FastestDamping, Finding, Hold, Injection, InjectionBalance,
+    InjectionCourse, InjectionWatch, LoadReached, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE,
+    NoReferenceGains, Over, PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains,
+    SamplingMargin, StaticLoad, Trial, WholeLoop, along, fastest_damping, mean_power_w, practical,
 };
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;

@@ -236,6 +236,7 @@ fn bound(setup: &Setup) -> Option<PowerBound> {
         Finding::SamplingMargin(_)
         | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
+        | Finding::ClippedCommands(_)
         | Finding::TrackingDisagreement(_) => None,
     })
 }

@@ -297,7 +297,7 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
     let nothing = Push { from_s: 1.0, until_s: 1.0, ..pulse(Effect::Torque(constant(&[1.0; 2]))) };
     assert_eq!(verdict(vec![nothing]), None);
     let ends = verdict(vec![pulse(Effect::Torque(constant(&[1.0; 2]))), pulse(hand(constant(&[0.1])))]).unwrap();
-    assert_eq!(ends, (Answer::Holds, "agent-2 is pushed, and the last push ends at t = 3.5 s".into()));
+    assert_eq!(ends, (Answer::Holds, "agent-2 is pushed, and the last push has ended by t = 3.5 s".into()));
     let (answer, because) = verdict(vec![forever(Effect::Torque(constant(&[1.0; 2])))]).unwrap();
     assert!(answer == Answer::NotCovered && because.contains("K s = tau_ext"), "{because}");
     let (answer, because) = verdict(vec![forever(hand(constant(&[0.1])))]).unwrap();
@@ -365,7 +365,7 @@ fn thm_verdicts_on_pushes_are_given_for_every_kind_that_tracks_or_agrees() {
             said(&setup, Id::PushesEnd).unwrap()
         };
         assert_eq!(said(&setup, Id::PushesEnd), None);
-        assert_eq!(verdict(2.0), (Answer::Holds, "agent is pushed, and the last push ends at t = 2 s".into()));
+        assert_eq!(verdict(2.0), (Answer::Holds, "agent is pushed, and the last push has ended by t = 2 s".into()));
         let (answer, because) = verdict(f64::INFINITY);
         assert_eq!(answer, Answer::NotCovered);
         assert_eq!(because, "agent is pushed for ever: the tracking error does not vanish");

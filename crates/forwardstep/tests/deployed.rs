@@ -340,3 +340,36 @@ fn regress_no_more_damping_is_advised_where_samples_bear_no_more() {
     let late = said(masses(5, 20, "[goal]\ndisagreement_below = 0.7\n"), 0);
     assert!(late.contains("agreed: "), "{late}");
 }
+
+/// Three masses whose limits are a quarter of what the design asks for: everything else was adequate, and they ran away.
+#[test]
+fn regress_limits_that_drive_the_robots_instead_of_the_law_are_told() {
+    let scenario = |limits: &str| {
+        format!(
+            "format = 2\ntime.end_s = 20\n[[agents]]\nname = \"m\"\ncount = 3\nrobot.point_mass = {{ dimension = 1, mass_kg = 2 }}\n\
+             start.position_m = [[0.0], [1.0], [3.0]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n\
+             [law.known]\ndamping.gain = 8\n[network]\nedges = [[\"m-1\", \"m-2\"], [\"m-2\", \"m-3\"], [\"m-3\", \"m-1\"]]\n\
+             delay.constant_s = 0.1\n[control]\nsample_hz = 20\n{limits}\n"
+        )
+    };
+    let folder = folder();
+    for (limits, answer, part) in [
+        ("torque_limit = 0.5", "inadequate", "in a trial of 20 s limits of torques change "),
+        ("torque_rate_limit_per_s = 0.5", "inadequate", "limits of torque rates change "),
+        ("torque_limit = 1.5", "not shown", "what is said of the law"),
+        ("torque_limit = 7", "adequate", "they change none of 1200 commands"),
+    ] {
+        let found = checked(&folder, &scenario(limits));
+        let clipped = found.iter().find(|one| one["id"] == "clipped-commands").unwrap();
+        assert_eq!(clipped["answer"], answer, "{limits}: {clipped}");
+        assert!(clipped["because"].as_str().unwrap().contains(part), "{limits}: {clipped}");
+    }
+    let found = checked(&folder, &scenario(""));
+    assert!(found.iter().all(|one| one["id"] != "clipped-commands"), "no limits");
+    fs::write(folder.path().join("loop.toml"), scenario("torque_limit = 0.5")).unwrap();
+    let arguments =
+        ["check", "loop.toml", "--practical", "--predict", "--accept", "continuous-time", "--accept", "applied-torque"];
+    let said = stdout(&forwardstep(&folder, &arguments).code(1));
+    assert!(said.contains("limits keep it from that: m-1, axis 1 would need 2.047 of 0.500"), "{said}");
+    assert!(said.contains("(but controllers sample, which can delay it)"), "{said}");
+}

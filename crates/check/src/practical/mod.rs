@@ -10,6 +10,7 @@
 //! - `led`: states that references lead robots through, at which it looks.
 //! - `looped`: agents of any kind as a whole, with their references and what neighbours tell, by differences.
 //! - `loads`: static torques against limits.
+//! - `clipped`: commands that limits change in a trial.
 //! - `postures`: those that both look at.
 //! - `power`: how large s stays when something acts for ever.
 //! - `injected`: what changed V along a sampled run, cause by cause.
@@ -19,6 +20,7 @@
 
 mod agreement;
 mod along;
+mod clipped;
 mod gains;
 mod held;
 mod injected;
@@ -40,6 +42,7 @@ use crate::instance::designed;
 
 pub use agreement::{AgreementBound, AxisBound};
 pub use along::{Along, LoadReached, MarginReached, PowerReached, along};
+pub use clipped::ClippedCommands;
 pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionCourse, InjectionWatch, NAMED_SHARE};
@@ -89,6 +92,8 @@ pub enum Finding {
     WholeLoop(WholeLoop),
     /// Whether the limits of torques suffice to stand still.
     StaticLoad(StaticLoad),
+    /// Whether limits change commands.
+    ClippedCommands(ClippedCommands),
     /// How large s stays.
     TrackingPower(PowerBound),
     /// What s does to agreement.
@@ -102,6 +107,7 @@ impl Finding {
             Finding::SamplingMargin(_) => "sampling-margin",
             Finding::WholeLoop(_) => "whole-loop",
             Finding::StaticLoad(_) => "static-load",
+            Finding::ClippedCommands(_) => "clipped-commands",
             Finding::TrackingPower(_) => "tracking-power",
             Finding::TrackingDisagreement(_) => "tracking-disagreement",
         }
@@ -113,6 +119,7 @@ impl Finding {
             Finding::SamplingMargin(margin) => margin.answer(),
             Finding::WholeLoop(found) => found.answer(),
             Finding::StaticLoad(load) => load.answer(),
+            Finding::ClippedCommands(clipped) => clipped.answer(),
             Finding::TrackingPower(_) => PracticalAnswer::Bound,
             Finding::TrackingDisagreement(bound) => bound.answer(),
         }
@@ -166,6 +173,7 @@ impl Finding {
             ],
             Finding::TrackingDisagreement(bound) => bound.numbers(),
             Finding::StaticLoad(load) => vec![("torque", load.torque), ("limit", load.limit), ("share", load.share())],
+            Finding::ClippedCommands(clipped) => vec![("share", clipped.share()), ("until_s", clipped.until_s)],
         }
     }
 
@@ -203,6 +211,7 @@ pub fn practical(setup: &Setup) -> Practical {
         margin.held_by_references = margin.start.is_unstable && knows(&margin.start.agent);
     }
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
+    let clipped = ClippedCommands::of(setup).map(Finding::ClippedCommands);
     // What may grow has no bound.
     let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown);
     let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);
@@ -210,5 +219,5 @@ pub fn practical(setup: &Setup) -> Practical {
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);
     let whole = whole.map(Finding::WholeLoop);
-    Practical { findings: [margin, whole, load, power, agreement].into_iter().flatten().collect() }
+    Practical { findings: [margin, whole, load, clipped, power, agreement].into_iter().flatten().collect() }
 }

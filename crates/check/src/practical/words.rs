@@ -1,8 +1,10 @@
 //! Sentences of practical verdicts.
 
+use forwardstep_sim::ClippedSamples;
+
 use super::{
-    AgreementBound, AxisBound, Finding, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains,
-    SamplingMargin, StaticLoad, WholeLoop,
+    AgreementBound, AxisBound, ClippedCommands, Finding, Over, PowerBound, PracticalAnswer, RECOMMENDED_MARGIN,
+    ReferenceGains, SamplingMargin, StaticLoad, WholeLoop,
 };
 use crate::hypothesis::numbers::{rounded, rounded_up};
 
@@ -12,6 +14,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
         Finding::WholeLoop(_) => "the loop as a whole decays from sample to sample",
         Finding::StaticLoad(_) => "torques and thrusts within their limits hold the robots at rest",
+        Finding::ClippedCommands(_) => "limits leave what the law asks for as it is",
         Finding::TrackingPower(_) => "how large s stays",
         Finding::TrackingDisagreement(_) => "what s adds to the disagreement",
     }
@@ -23,6 +26,7 @@ pub(super) fn because(finding: &Finding) -> String {
         Finding::SamplingMargin(margin) => sampling(margin),
         Finding::WholeLoop(found) => whole(found),
         Finding::StaticLoad(load) => standing(load),
+        Finding::ClippedCommands(found) => clipped(found),
         Finding::TrackingPower(bound) => power(bound),
         Finding::TrackingDisagreement(bound) => agreement(bound),
     }
@@ -85,6 +89,23 @@ fn standing(load: &StaticLoad) -> String {
         format!("over {postures} postures between the starts and on the way")
     };
     format!("the largest share of a torque limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+}
+
+fn clipped(found: &ClippedCommands) -> String {
+    let ClippedSamples { samples, torque, rate } = found.of;
+    let until = format!("in a trial of {} s", rounded(found.until_s));
+    let changed = match (torque, rate) {
+        (0, 0) => return format!("{until} they change none of {samples} commands"),
+        (torque, 0) => format!("limits of torques change {torque}"),
+        (0, rate) => format!("limits of torque rates change {rate}"),
+        (torque, rate) => format!("limits of torques change {torque} and limits of their rates {rate}"),
+    };
+    let so = if found.answer() == PracticalAnswer::Marginal {
+        "what is said here holds while they change none"
+    } else {
+        "what is said of the law, and what is predicted, is not said of this loop: raise them, or ask for less by smaller roots, weights and gains"
+    };
+    format!("{until} {changed} of {samples} commands; {so}")
 }
 
 fn power(bound: &PowerBound) -> String {

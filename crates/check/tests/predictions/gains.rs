@@ -219,7 +219,11 @@ fn thm_the_worst_pushes_move_the_posture_as_fast_as_is_said_and_none_faster() {
 fn bound(setup: &Setup) -> Option<AgreementBound> {
     practical(setup).findings.into_iter().find_map(|finding| match finding {
         Finding::TrackingDisagreement(bound) => Some(bound),
-        Finding::SamplingMargin(_) | Finding::WholeLoop(_) | Finding::StaticLoad(_) | Finding::TrackingPower(_) => None,
+        Finding::SamplingMargin(_)
+        | Finding::WholeLoop(_)
+        | Finding::StaticLoad(_)
+        | Finding::ClippedCommands(_)
+        | Finding::TrackingPower(_) => None,
     })
 }
 
@@ -314,6 +318,7 @@ fn what_s_adds_is_said_with_its_numbers() {
         Finding::SamplingMargin(_)
         | Finding::WholeLoop(_)
         | Finding::StaticLoad(_)
+        | Finding::ClippedCommands(_)
         | Finding::TrackingDisagreement(_) => None,
     });
     let [least, most] = bound(&uneven).unwrap().axes.unwrap();

@@ -287,9 +287,10 @@ impl CourseFound {
             let unit = if unit.is_empty() { "in its unit".to_owned() } else { format!("{unit}/s") };
             format!("s starts from {} {unit}", number_words(s))
         });
-        let far = (off > NEAR).then(|| "estimates start far from the truth".to_owned());
-        let pushed = setup.agents.iter().any(|agent| !agent.pushes.is_empty()).then(|| "pushes act".to_owned());
-        let reasons: Vec<String> = begins.into_iter().chain(far).chain(pushed).collect();
+        let far = (off > 0.0).then(|| start_of_estimates(off));
+        let pushed = is_pushed(setup).then(|| "pushes act".to_owned());
+        let sampled = setup.control.is_some().then(|| "controllers sample".to_owned());
+        let reasons: Vec<String> = begins.into_iter().chain(far).chain(pushed).chain(sampled).collect();
         if reasons.is_empty() {
             return String::new();
         }
@@ -332,8 +333,13 @@ impl CourseFound {
         let off = self.peak_torques.iter().map(|peak| peak.estimate_off).fold(0.0, f64::max);
         let near = match off {
             0.0 => String::new(),
-            off if off <= NEAR => format!("; estimates start within {:.0} % of the truth", (100.0 * off).ceil()),
-            _ => "; estimates start far from the truth, where the torque can be another".to_owned(),
+            off if off <= NEAR => format!("; {}", start_of_estimates(off)),
+            off => format!("; {}, where the torque can be another", start_of_estimates(off)),
+        };
+        let more = match (is_pushed(setup), setup.control.is_some()) {
+            (true, _) => "; without what pushes add to it",
+            (false, true) => "; without what samples add to it",
+            (false, false) => "",
         };
         // Twice the prediction is too much to choose a motor by.
         let beside =
@@ -351,8 +357,41 @@ impl CourseFound {
             },
         );
         let peak_torque = three_places(peak.value.abs());
-        Some(format!("peak torque {peak_torque} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}", peak.t_s))
+        let clipped = self.clipped_words(setup);
+        Some(format!(
+            "peak torque {peak_torque} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}{more}{clipped}",
+            peak.t_s
+        ))
     }
+
+    /// That the limits of the controllers are below what is predicted, where they are.
+    fn clipped_words(&self, setup: &Setup) -> String {
+        let limits = setup.control.as_ref().and_then(|control| control.actuators.torque_limit.as_ref());
+        let limit = |peak: &&PredictedTorque| limits.and_then(|limits| limits.get(peak.axis)).copied();
+        let share = |peak: &PredictedTorque| limit(&peak).map_or(0.0, |limit| peak.value.abs() / limit);
+        let worst = self.peak_torques.iter().reduce(|a, b| if share(b) > share(a) { b } else { a });
+        let Some((peak, limit)) = worst.filter(|peak| share(peak) > 1.0).and_then(|peak| Some((peak, limit(&peak)?)))
+        else {
+            return String::new();
+        };
+        let (agent, axis) = (names::agent_name(setup, peak.agent), names::torque_words(setup, peak.agent, peak.axis));
+        let (needs, limit) = (three_places(peak.value.abs()), three_places(limit));
+        format!(
+            "; limits keep it from that: {agent}, {axis} would need {needs} of {limit}, and the run is another then"
+        )
+    }
+}
+
+fn is_pushed(setup: &Setup) -> bool {
+    setup.agents.iter().any(|agent| !agent.pushes.is_empty())
+}
+
+/// How far estimates start from the truth, as a part of it.
+fn start_of_estimates(off: f64) -> String {
+    if off > NEAR {
+        return "estimates start far from the truth".to_owned();
+    }
+    format!("estimates start within {:.0} % of the truth", (100.0 * off).ceil())
 }
 
 /// A number with three decimal places, where these are digits that say something and not too many.

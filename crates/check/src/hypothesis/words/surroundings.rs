@@ -76,7 +76,11 @@ fn pushes(pushed: &[Named], [torques, others, hands, unbounded]: [&[Named]; 4], 
         ));
     }
     if because.is_empty() {
-        because.push(format!("{} pushed, and the last push ends at t = {} s", is_or_are(pushed), seconds(last_end_s)));
+        because.push(format!(
+            "{} pushed, and the last push has ended by t = {} s",
+            is_or_are(pushed),
+            seconds(last_end_s)
+        ));
     }
     because.join("; ")
 }
