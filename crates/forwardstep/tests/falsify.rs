@@ -4,7 +4,7 @@ use std::fs;
 
 use tempfile::TempDir;
 
-use crate::support::{folder, forwardstep, is_long, some, stdout};
+use crate::support::{folder, forwardstep, is_long, some, stderr, stdout};
 
 /// A number of the summary.
 fn count(said: &str, words: &str) -> u64 {
@@ -36,13 +36,6 @@ fn the_same_seed_draws_the_same_cases() {
     assert_eq!(said("3"), said("3"));
     assert_ne!(said("3"), said("4"));
     assert!(said("3").starts_with("10 cases of seed 3\n"));
-}
-
-#[test]
-fn a_folder_that_cannot_be_written_to_is_no_matter_while_nothing_is_refuted() {
-    let folder = folder();
-    fs::write(folder.path().join("taken"), "a file").unwrap();
-    forwardstep(&folder, &["falsify", "--cases", "2", "--out", "taken"]).code(0);
 }
 
 #[test]
@@ -194,4 +187,17 @@ fn attack_inside_a_theorem_finds_nothing_that_grows() {
         assert!(percent > 0.0 && percent < 100.0 && said.contains("do not hold for it: none\n"), "{said}");
     }
     forwardstep(&folder, &["attack", "a1", "--seconds", "1", "--out", "no/such/folder.toml"]).code(2);
+}
+
+#[test]
+fn regress_a_place_that_takes_no_file_is_refused_before_the_search() {
+    let folder = folder();
+    fs::write(folder.path().join("file"), "mine").unwrap();
+    for out in ["file", "file/below"] {
+        let said = stderr(&forwardstep(&folder, &["falsify", "--cases", "1", "--out", out]).code(2));
+        assert!(said.contains("`file` is no folder"), "{said}");
+    }
+    // What is not needed is not made.
+    forwardstep(&folder, &["falsify", "--cases", "1", "--out", "made/too"]).code(0);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }

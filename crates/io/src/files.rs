@@ -1,7 +1,7 @@
 //! Text files, and what stands beside them.
 
 use std::fmt;
-use std::fs::{File, FileType};
+use std::fs::{File, FileType, OpenOptions};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -56,6 +56,8 @@ pub enum Special {
     Socket,
     /// A device.
     Device,
+    /// Something that gives bytes when it has some.
+    Waits,
     /// Something that this system does not tell.
     Other,
 }
@@ -66,6 +68,7 @@ impl fmt::Display for Special {
             Special::Pipe => "a pipe",
             Special::Socket => "a socket",
             Special::Device => "a device",
+            Special::Waits => "something that waits for more",
             Special::Other => "something special",
         })
     }
@@ -97,6 +100,7 @@ impl From<std::io::Error> for ReadError {
         match error.kind() {
             ErrorKind::NotFound => ReadError::Missing,
             ErrorKind::IsADirectory => ReadError::Folder,
+            ErrorKind::WouldBlock => ReadError::NotAFile(Special::Waits),
             kind => ReadError::Refused(kind),
         }
     }
@@ -123,7 +127,19 @@ pub(crate) fn open_file(path: &Path) -> Result<File, ReadError> {
     if !kind.is_file() {
         return Err(ReadError::NotAFile(Special::of(kind)));
     }
-    Ok(File::open(path)?)
+    Ok(without_waiting(OpenOptions::new().read(true)).open(path)?)
+}
+
+/// What says that it is a file may wait for bytes all the same, as the log of the kernel does, and a pipe may take its place meanwhile.
+#[cfg(unix)]
+fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed())
+}
+
+#[cfg(not(unix))]
+fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
+    options
 }
 
 /// Reads a text file of reasonable size.

@@ -15,6 +15,8 @@ pub enum Foreign {
     Accounts,
     /// Passwords or tokens under their names.
     Secrets,
+    /// Variables of an environment, some of which may be secrets.
+    Variables,
     /// A page of the web.
     Page,
 }
@@ -26,6 +28,7 @@ impl fmt::Display for Foreign {
             Foreign::Key => "a key or a certificate",
             Foreign::Accounts => "a list of accounts",
             Foreign::Secrets => "passwords or tokens",
+            Foreign::Variables => "variables of an environment",
             Foreign::Page => "a page of the web",
         })
     }
@@ -52,8 +55,23 @@ const KEYS: [&str; 6] =
     ["-----BEGIN ", "---- BEGIN ", "PuTTY-User-Key-File-", "AGE-SECRET-KEY-", "ssh-rsa AAAA", "ssh-ed25519 AAAA"];
 
 /// Parts of names under which secrets are kept and nothing else.
-const SECRETS: [&str; 8] =
-    ["PASSWORD", "PASSWD", "SECRET", "TOKEN", "API_KEY", "ACCESS_KEY", "PRIVATE_KEY", "CREDENTIAL"];
+const SECRETS: [&str; 10] = [
+    "PASSWORD",
+    "PASSWD",
+    "PASSPHRASE",
+    "SECRET",
+    "TOKEN",
+    "API_KEY",
+    "APIKEY",
+    "ACCESS_KEY",
+    "PRIVATE_KEY",
+    "CREDENTIAL",
+];
+/// Words that names of secrets end in.
+const LAST_WORDS: [&str; 4] = ["PASS", "PWD", "PSK", "PIN"];
+/// How tokens begin, whatever they are called.
+const TOKENS: [&str; 10] =
+    ["ghp_", "gho_", "ghs_", "github_pat_", "glpat-", "sk_live_", "sk_test_", "xoxb-", "xoxp-", "AKIA"];
 
 /// How passwords begin that were hashed.
 const HASHES: [&str; 3] = ["$", "{SHA}", "{SSHA}"];
@@ -79,7 +97,18 @@ pub(crate) fn foreign_text(text: &str) -> Option<Foreign> {
         return Some(Foreign::Accounts);
     }
     let is_for_machines = has_logins(first, text) || is_login(first);
-    (is_for_machines || text.lines().any(is_secret)).then_some(Foreign::Secrets)
+    if is_for_machines || text.lines().any(is_secret) {
+        return Some(Foreign::Secrets);
+    }
+    is_variable(first).then_some(Foreign::Variables)
+}
+
+/// A line such as `PATH=/bin`. Keys of a scenario have small letters.
+fn is_variable(line: &str) -> bool {
+    let line = line.strip_prefix("export ").unwrap_or(line);
+    let Some((name, _)) = line.split_once('=') else { return false };
+    name.starts_with(|first: char| first.is_ascii_uppercase())
+        && name.bytes().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_')
 }
 
 fn is_number(field: &str) -> bool {
@@ -126,7 +155,18 @@ fn is_secret(line: &str) -> bool {
     let Some((name, value)) = line.split_once(['=', ':']) else { return false };
     let name = name.trim().trim_matches(['"', '\'']).to_ascii_uppercase();
     let plain = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
-    plain && !value.trim().is_empty() && SECRETS.iter().any(|secret| name.contains(secret))
+    let value = value.trim().trim_matches(['"', '\'']);
+    let last = name.rsplit('_').next().unwrap_or_default();
+    let is_named = SECRETS.iter().any(|secret| name.contains(secret)) || LAST_WORDS.contains(&last);
+    let is_token = TOKENS.iter().any(|begins| value.starts_with(begins));
+    plain && !value.is_empty() && (is_named || is_token || has_login(value))
+}
+
+/// An address with a name and a password in it.
+fn has_login(value: &str) -> bool {
+    let Some((_, behind)) = value.split_once("://") else { return false };
+    let host = behind.split(['/', '?', '#']).next().unwrap_or_default();
+    host.rsplit_once('@').is_some_and(|(login, _)| login.contains(':'))
 }
 
 #[cfg(test)]
@@ -152,6 +192,14 @@ mod tests {
             ("*:*:*:me:a\\:b\n", Foreign::Secrets),
             ("{\n  \"client_secret\": \"abc\"\n}\n", Foreign::Secrets),
             ("user: me\npassword: hunter2\n", Foreign::Secrets),
+            ("DB_PASS=hunter2\n", Foreign::Secrets),
+            ("apikey: abc\n", Foreign::Secrets),
+            ("network={\n\tpsk=\"hunter2\"\n}\n", Foreign::Secrets),
+            ("pin = 1234\n", Foreign::Secrets),
+            ("GH=ghp_abc\n", Foreign::Secrets),
+            ("url = \"postgres://me:hunter2@example.org/db\"\n", Foreign::Secrets),
+            ("HOME=/root\nPATH=/bin\n", Foreign::Variables),
+            ("export LANG=C\n", Foreign::Variables),
             ("me:$apr1$abc$def\n", Foreign::Accounts),
             ("me@example.org:{SHA}abc=\n", Foreign::Accounts),
             ("\n<!DOCTYPE HTML>\n<title>", Foreign::Page),
@@ -176,6 +224,9 @@ mod tests {
             "a:b",
             "token",
             "machine = 1",
+            "title = \"see https://example.org/a@b:c\"",
+            "spin = 1",
+            "Mass = 1",
             "a:1:b",
         ] {
             assert_eq!(foreign_text(text), None, "{text}");

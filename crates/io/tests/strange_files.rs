@@ -155,6 +155,14 @@ fn pipes_devices_and_folders_are_refused_at_once() {
     let _listening = std::os::unix::net::UnixListener::bind(&socket).unwrap();
     assert!(said(&device).iter().all(|said| said.contains("it is a device, and no file")));
     assert!(said(&socket).iter().all(|said| said.contains("it is a socket, and no file")));
+    // What says that it is a file, and gives nothing until there is more.
+    let log = folder.path().join("log");
+    std::os::unix::fs::symlink("/proc/kmsg", &log).unwrap();
+    if log.exists() {
+        let is_refused =
+            |said: &String| said.contains("something that waits for more") || said.contains("permission denied");
+        assert!(said(&log).iter().all(is_refused), "{:?}", said(&log));
+    }
 }
 
 #[cfg(unix)]

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{self, BufRead, IsTerminal, Write};
 
 use clap::ValueEnum;
+use forwardstep::io::shown;
 
 /// Asks for what is missing, or takes the default.
 pub(crate) struct Asker {
@@ -41,7 +42,8 @@ impl Asker {
             }
             match parse(answer) {
                 Ok(value) => return value,
-                Err(objection) => drop(writeln!(io::stderr(), "  {objection}")),
+                // It may repeat the answer.
+                Err(objection) => drop(writeln!(io::stderr(), "  {}", shown(objection.to_string().as_str()))),
             }
         }
     }
@@ -61,7 +63,7 @@ impl Asker {
         let names: Vec<String> = T::value_variants().iter().map(name).collect();
         let question = format!("{question}: {}", names.join(", "));
         let found = self.ask(given.as_ref().map(name), &question, name(&usual), |answer| {
-            T::from_str(answer, true).map(|value| name(&value))
+            T::from_str(answer, true).map(|value| name(&value)).map_err(|_| format!("`{answer}` is none of these"))
         });
         T::from_str(&found, true).unwrap_or(usual)
     }

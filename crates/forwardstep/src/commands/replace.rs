@@ -34,6 +34,18 @@ pub(super) fn write_into(folder: &Path, name: &str, text: &str) -> Result<PathBu
     Ok(path)
 }
 
+/// Checks that this is a folder, or that one can be made there. Asked before work that may have nothing to write.
+pub(super) fn may_be_folder(path: &Path) -> Result<(), Plain<String>> {
+    let there = path.ancestors().find(|above| above.symlink_metadata().is_ok());
+    match there.filter(|there| !there.is_dir()) {
+        Some(there) => {
+            let said = format!("`{}` is no folder", shown(there));
+            Err(Plain::with_help(said, Some("name a folder, or one that is not there yet")))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Checks that `path` can be written: nothing is there, or what `is_own` knows as written by this command before. Asked before the
 /// work, so that none is lost.
 pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool) -> Result<(), Plain<String>> {

@@ -1,10 +1,11 @@
 //! `forwardstep sampling-limit`
 
-use forwardstep::io::output::{Accepted, Deployment, Rule, SamplingLimit, Trial};
+use forwardstep::io::output::{Accepted, Deployment, Measuring, Rule, SamplingLimit, Trial};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{SetupError, VelocitySensor};
 
+use super::progress::Bar;
 use crate::arguments::SamplingLimitOptions;
 use crate::console::{Console, DIM, Plain, complain};
 use crate::status::Status;
@@ -41,12 +42,20 @@ pub(crate) fn sampling_limit(
         let deployments = deployments(options, &scenario);
         for deployment in &deployments {
             let accepted = Accepted { peak_error: options.peak_error, remains: options.disagreement };
-            let mut tell = |trial: Trial| {
-                if !options.table {
-                    console.line(tried(trial));
+            let mut bar = None;
+            let mut watch = |seen: Measuring| match seen {
+                Measuring::Runs { period_s, progress } => {
+                    let named = || Bar::named(format!("{}, {} ms", scenario.name, to_digits(1e3 * period_s, 4)));
+                    bar.get_or_insert_with(named).update(progress);
+                }
+                Measuring::Ran(trial) => {
+                    bar.take().into_iter().for_each(Bar::clear);
+                    if !options.table {
+                        console.line(tried(trial));
+                    }
                 }
             };
-            let found = match SamplingLimit::measure(&scenario.setup, *deployment, accepted, &mut tell) {
+            let found = match SamplingLimit::measure(&scenario.setup, *deployment, accepted, &mut watch) {
                 Ok(found) => found,
                 // Of all ways to sample those that the laws have no use for, which measure no velocity.
                 Err(SetupError::VelocityUnused { .. }) if deployments.len() > 1 => continue,

@@ -28,9 +28,44 @@ const [youngest, oldest] = (() => {
 // From 0 for the youngest that is ever heard to 1 for the oldest; what never changes is not stale.
 const staleness = (age) => (oldest - youngest > 1e-6 * oldest ? Math.min(1, Math.max(0, (age - youngest) / (oldest - youngest))) : 0);
 
-// Messages on their way are left out that are not under way for `pace`, s.
+// Of very many edges so many are drawn, spread evenly.
+const MOST_ARROWS = 2000;
+// Of more, what is on its way would hide them.
+const MOST_FLIGHTS = 120;
+// Multiples of the golden ratio leave nobody out, in whatever order edges come.
+const someOf = (edges) => {
+  if (edges.length <= MOST_ARROWS) return edges;
+  const part = (k) => (k * 0.6180339887498949) % 1;
+  const kept = [...edges.keys()].sort((a, b) => part(a) - part(b)).slice(0, MOST_ARROWS);
+  return kept.sort((a, b) => a - b).map((k) => edges[k]);
+};
+// What stays while a graph is in force: its edges, those that are drawn, for each age that something heard can have the first edge and how many,
+// and who is silent or hears nothing.
+const knownOf = (() => {
+  const kept = new Map();
+  const found = (graph) => {
+    const edges = (scene.graphs[graph] ?? []).filter(([from, to]) => from < vertices && to < vertices).map(([from, to, delay]) => ({ from, to, delay }));
+    const ages = new Map();
+    for (const edge of edges) {
+      // Packets have ages of their own.
+      const key = links.has(`${edge.from} ${edge.to}`) ? edge : edge.delay;
+      ages.set(key, { edge: ages.get(key)?.edge ?? edge, count: (ages.get(key)?.count ?? 0) + 1 });
+    }
+    const [speak, hear] = [new Set(edges.map((e) => e.from)), new Set(edges.map((e) => e.to))];
+    const everyone = [...bodies.keys()];
+    const silent = everyone.filter((v) => !speak.has(v));
+    const deaf = everyone.filter((v) => !hear.has(v) && !bodies[v].leads);
+    return { edges, drawn: someOf(edges), ages: [...ages.values()], silent, deaf };
+  };
+  return (graph) => {
+    if (!kept.has(graph)) kept.set(graph, found(graph));
+    return kept.get(graph);
+  };
+})();
+
+// Of the edges in force those that are drawn. Messages on their way are left out that are not under way for `pace`, s.
 const heardAt = (time, pace = 0) => {
-  if (time > drawnUntil) return { graph: null, edges: [] };
+  if (time > drawnUntil) return { graph: null, time, edges: [] };
   let [low, high] = [0, spans.length - 1];
   while (low < high) {
     const half = (low + high + 1) >> 1;
@@ -38,59 +73,42 @@ const heardAt = (time, pace = 0) => {
     else high = half - 1;
   }
   const graph = spans[low]?.[2] ?? 0;
-  const edges = (scene.graphs[graph] ?? []).filter(([from, to]) => from < vertices && to < vertices).map(([from, to, delay]) => {
-    const ages = ageOf(from, to, delay, time);
-    const isExact = ages !== null && ages[0] === ages[1];
+  const { drawn } = knownOf(graph);
+  const edges = drawn.map((edge) => {
+    const ages = ageOf(edge.from, edge.to, edge.delay, time);
     return {
-      from, to,
-      age: isExact ? ages[0] : null,
-      between: ages !== null && !isExact ? ages : null,
+      from: edge.from, to: edge.to,
+      age: ages !== null && ages[0] === ages[1] ? ages[0] : null,
+      between: ages !== null && ages[0] !== ages[1] ? ages : null,
       share: ages === null ? 0 : staleness(0.5 * (ages[0] + ages[1])),
-      flights: flightsOf({ from, to, delay }, time, pace),
+      flights: drawn.length > MOST_FLIGHTS ? [] : flightsOf(edge, time, pace),
     };
   });
-  return { graph, edges };
+  return { graph, time, edges };
 };
 
-// Of very many edges so many are drawn, spread evenly.
-const MOST_ARROWS = 2000;
-// Multiples of the golden ratio leave nobody out, in whatever order edges come.
-const drawnOf = (() => {
-  const kept = new Map();
-  const pick = (count) => {
-    const part = (k) => (k * 0.6180339887498949) % 1;
-    return Array.from({ length: count }, (_, k) => k).sort((a, b) => part(a) - part(b)).slice(0, MOST_ARROWS).sort((a, b) => a - b);
-  };
-  return (edges) => {
-    if (edges.length <= MOST_ARROWS) return edges;
-    if (!kept.has(edges.length)) kept.set(edges.length, pick(edges.length));
-    return kept.get(edges.length).map((k) => edges[k]);
-  };
-})();
-
 const someNames = (list) => (list.length > 4 ? `${list.slice(0, 3).join(", ")} and ${list.length - 3} more` : list.join(", "));
-const ageWords = ({ age, between }) => (between ? `between ${number(between[0], 3)} and ${number(between[1], 3)} s` : `${number(age, 3)} s`);
-const graphWords = ({ graph, edges }) => {
+const ageWords = ([low, high]) => (low === high ? `${number(low, 3)} s` : `between ${number(low, 3)} and ${number(high, 3)} s`);
+const graphWords = ({ graph, time }) => {
   if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
   if (graph === null) return `Unknown: the graph changes very often, and is not drawn after ${number(drawnUntil)} s.`;
   const name = (v) => bodies[v].name;
-  const [speak, hear] = [new Set(edges.map((e) => e.from)), new Set(edges.map((e) => e.to))];
-  const everyone = [...bodies.keys()];
+  const { edges, drawn, ages, silent, deaf } = knownOf(graph);
   const count = scene.edge_counts[graph] ?? edges.length;
   // Nothing is said of all where not all are on the page.
-  const whole = count === edges.length;
-  const silent = whole ? everyone.filter((v) => !speak.has(v)).map(name) : [];
-  const deaf = whole ? everyone.filter((v) => !hear.has(v) && !bodies[v].leads).map(name) : [];
-  const most = (e) => e?.between?.[1] ?? e?.age ?? 1e-6;
-  const late = edges.reduce((before, e) => (most(e) > most(before) ? e : before), null);
-  const unknown = edges.filter((e) => e.age === null && e.between === null).length;
-  const drawn = Math.min(edges.length, MOST_ARROWS);
+  const named = (list) => (count === edges.length && list.length ? someNames(list.map(name)) : null);
+  let [late, most, unknown] = [null, 1e-6, 0];
+  for (const { edge, count } of ages) {
+    const age = ageOf(edge.from, edge.to, edge.delay, time);
+    if (age === null) unknown += count;
+    else if (age[1] > most) [late, most] = [{ ...edge, age }, age[1]];
+  }
   return [
-    drawn < count ? `${drawn} of ${count} edges drawn.` : count === 1 ? "1 edge." : `${count} edges.`,
-    ...(late ? [`Oldest message heard: ${ageWords(late)} (${name(late.from)} → ${name(late.to)}).`] : []),
+    drawn.length < count ? `${drawn.length} of ${count} edges drawn.` : count === 1 ? "1 edge." : `${count} edges.`,
+    ...(late ? [`Oldest message heard: ${ageWords(late.age)} (${name(late.from)} → ${name(late.to)}).`] : []),
     ...(unknown ? [`How old it is on ${unknown} edges is not on this page.`] : []),
-    ...(silent.length ? [`No agent hears ${someNames(silent)}.`] : []),
-    ...(deaf.length ? [`Nothing is heard by ${someNames(deaf)}.`] : []),
+    ...(named(silent) ? [`No agent hears ${named(silent)}.`] : []),
+    ...(named(deaf) ? [`Nothing is heard by ${named(deaf)}.`] : []),
     ...(flightWords ? [flightWords] : []),
   ].join(" ");
 };
@@ -172,24 +190,25 @@ const graphIn = (place) => {
       return group;
     }));
   };
-  const draw = ({ graph, edges }) => {
-    last = { graph, edges };
+  const draw = (heard) => {
+    const { graph, edges } = heard;
+    last = heard;
     // Ages change all the time, arrows only with the graph.
-    picture.setAttribute("aria-label", `The graph: ${graphWords({ graph, edges })}`);
+    picture.setAttribute("aria-label", `The graph: ${graphWords(heard)}`);
     picture.classList.toggle("unknown", graph === null);
     if (shown !== graph) {
       shown = graph;
       // So many arrows would hide each other, and the nodes.
-      const faint = edges.length > 300 ? Math.max(0.08, 300 / Math.min(edges.length, MOST_ARROWS)) : 1;
+      const faint = edges.length > 300 ? Math.max(0.08, 300 / edges.length) : 1;
       for (const ink of ["stroke-opacity", "fill-opacity"]) arrows.setAttribute(ink, faint.toFixed(2));
-      arrows.replaceChildren(...drawnOf(edges).map(({ from, to }) => {
+      arrows.replaceChildren(...edges.map(({ from, to }) => {
         const { p, q, ux, uy, far } = along(from, to);
         const head = Math.min(7, 0.4 * far);
         const points = [[q.x, q.y], [q.x - head * ux - 0.4 * head * uy, q.y - head * uy + 0.4 * head * ux], [q.x - head * ux + 0.4 * head * uy, q.y - head * uy - 0.4 * head * ux]];
         return svg("g", { class: `edge a${from}` }, svg("line", { x1: p.x, y1: p.y, x2: q.x - 0.7 * head * ux, y2: q.y - 0.7 * head * uy }), svg("polygon", { points: points.join(" ") }));
       }));
     }
-    const flying = edges.length > 120 ? [] : edges.flatMap(({ from, to, flights }) => {
+    const flying = edges.flatMap(({ from, to, flights }) => {
       const { p, q } = along(from, to);
       return flights.map(({ share, lost }) => ({ from, lost, share, x: p.x + share * (q.x - p.x), y: p.y + share * (q.y - p.y) }));
     });

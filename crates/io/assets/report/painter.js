@@ -159,8 +159,8 @@ const drawTrails = (ctx, see, frame, colours, hidden, alone) => {
 const drawEdges = (ctx, see, frame, colours, heard) => {
   const at = new Map(frame.nodes.map(({ body, at }) => [body.vertex, see.project(at)]));
   // Over time they all lie beside the same line.
-  const many = heard.edges.length > (charted ? 24 : 120);
-  for (const { from, to, age, share, flights } of drawnOf(heard.edges)) {
+  const many = heard.edges.length > (charted ? 24 : MOST_FLIGHTS);
+  for (const { from, to, age, share, flights } of heard.edges) {
     const b = at.get(to);
     if (!at.has(from) || !b) continue;
     // Over time an edge begins where its sender was when it said what is heard.

@@ -19,6 +19,8 @@ const VANISHED: f64 = 0.01;
 const FALLS: f64 = 0.9;
 /// The same of a gap that falls from row to row.
 const FALLS_STEADILY: f64 = 0.999;
+/// A gap fell faster before when it did so by this much, of the logarithm of what was left.
+const SLOWS: f64 = 1.15;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
 /// A gap that is so many times what the design alone leaves is not its own.
@@ -54,7 +56,8 @@ impl Conclusion {
         let bound = bound.unwrap_or(VANISHED * largest);
         // What was nothing from the start has vanished as well.
         let reached = last < bound || last == 0.0;
-        let trend = Trend::of(&record.outcome.recording.t_s, &series.overall);
+        let t_s = &record.outcome.recording.t_s;
+        let (trend, slows) = (Trend::of(t_s, &series.overall), is_slowing(t_s, &series.overall));
         // A goal may ask for less than that nothing is left.
         let arrival = match reached {
             true if last < VANISHED * largest || last == 0.0 => Arrival::Vanished,
@@ -62,7 +65,7 @@ impl Conclusion {
             false => Arrival::Apart,
         };
         let sentence = end.sentence(record.setup, arrival, trend);
-        let advice = if reached { Vec::new() } else { advice(record, metrics, trend, bound / last) };
+        let advice = if reached { Vec::new() } else { advice(record, metrics, (trend, slows), bound / last) };
         Some(Conclusion { reached, sentence, advice })
     }
 }
@@ -166,25 +169,11 @@ enum Trend {
 }
 
 impl Trend {
-    /// By the largest value of the last quarter of the time and of the one before, which of a gap that falls from row to row is
-    /// the one at their start: by those at their ends there.
+    /// By the last quarter of the time and the one before it.
     fn of(t_s: &[f64], overall: &[f64]) -> Trend {
-        let (Some(begin_s), Some(end_s)) = (t_s.first(), t_s.last()) else { return Trend::Stays };
-        let quarter_s = 0.25 * (end_s - begin_s);
-        // Rows need not be evenly spaced.
-        let row_from = |quarters: f64| t_s.partition_point(|t_s| *t_s < end_s - quarters * quarter_s);
-        let (earlier, last_quarter, end) = (row_from(2.0), row_from(1.0), t_s.len().min(overall.len()));
-        if earlier >= last_quarter || last_quarter + 1 >= end {
-            return Trend::Stays;
-        }
-        let (first, last) = (overall[last_quarter], overall[end - 1]);
-        if overall[earlier..end].is_sorted_by(|before, after| before >= after) && last < FALLS_STEADILY * first {
-            return Trend::Falls((last / first).powf(quarter_s / (end_s - t_s[last_quarter])));
-        }
-        let largest = |rows: std::ops::Range<usize>| overall[rows].iter().copied().fold(0.0, greater);
-        match largest(last_quarter..end) / largest(earlier..last_quarter) {
-            left if left < FALLS => Trend::Falls(left),
-            left if left > 1.0 / FALLS => Trend::Grows,
+        match left_in_quarter(0, t_s, overall) {
+            Some((left, steadily)) if left < if steadily { FALLS_STEADILY } else { FALLS } => Trend::Falls(left),
+            Some((left, _)) if left > 1.0 / FALLS => Trend::Grows,
             _ => Trend::Stays,
         }
     }
@@ -198,8 +187,37 @@ impl Trend {
     }
 }
 
-/// What to change: `share` of the gap is what may be left.
-fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -> Vec<String> {
+/// What is left of a gap in a quarter of the time, that which ends so many `quarters` before the end, and whether it falls there from row to row;
+/// `None` where there are too few rows to tell.
+///
+/// By its largest value there and in the quarter before, which of a gap that falls from row to row is the one at their start: by those at its
+/// ends then.
+fn left_in_quarter(quarters: u32, t_s: &[f64], overall: &[f64]) -> Option<(f64, bool)> {
+    let (begin_s, end_s) = (t_s.first()?, t_s.last()?);
+    let quarter_s = 0.25 * (end_s - begin_s);
+    // Rows need not be evenly spaced.
+    let row_from = |quarters: u32| t_s.partition_point(|t_s| *t_s < end_s - f64::from(quarters) * quarter_s);
+    let (before, from) = (row_from(quarters + 2), row_from(quarters + 1));
+    let end = if quarters == 0 { t_s.len().min(overall.len()) } else { row_from(quarters) };
+    if before >= from || from + 1 >= end {
+        return None;
+    }
+    let (first, last) = (overall[from], overall[end - 1]);
+    if overall[before..end].is_sorted_by(|before, after| before >= after) && last < first {
+        return Some(((last / first).powf(quarter_s / (t_s[end - 1] - t_s[from])), true));
+    }
+    let largest = |rows: std::ops::Range<usize>| overall[rows].iter().copied().fold(0.0, greater);
+    Some((largest(from..end) / largest(before..from), false))
+}
+
+/// Whether a gap that falls does so more slowly than it did: what is left of it after a time is no measure for what a longer time leaves then.
+fn is_slowing(t_s: &[f64], overall: &[f64]) -> bool {
+    let rate = |quarters| left_in_quarter(quarters, t_s, overall).map(|(left, _)| -left.ln());
+    rate(1).zip(rate(0)).is_some_and(|(before, now)| before > SLOWS * now)
+}
+
+/// What to change: `share` of the gap is what may be left. With its trend comes whether that slows down.
+fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, bool), share: f64) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
     let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
     let stopped = record.outcome.ending.before_horizon_s().is_some();
@@ -209,9 +227,14 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, trend: Trend, share: f64) -
         // A quarter more than it takes at this rate, which need not stay.
         let end_s = nice(last_t_s + 1.25 * more_s);
         if stopped && end_s <= record.setup.time.end_s {
-            advice.push("let it run to its end: at this rate that is enough".into());
+            let after = if slows { ", though it comes closer more and more slowly" } else { "" };
+            advice.push(format!("let it run to its end: at this rate that is enough{after}"));
         } else if more_s.is_finite() && more_s <= LONGEST * last_t_s {
-            advice.push(format!("run longer: at this rate `time.end_s = {end_s}` would be enough"));
+            advice.push(if slows {
+                format!("run longer: it comes closer more and more slowly, so `time.end_s = {end_s}` at least")
+            } else {
+                format!("run longer: at this rate `time.end_s = {end_s}` would be enough")
+            });
         }
     }
     // A time has been advised, with room.
@@ -353,6 +376,22 @@ mod tests {
             let Trend::Falls(left) = Trend::of(&t_s, &gap) else { panic!("it falls") };
             assert!((left - (-1.0_f64).exp()).abs() < 1e-9, "{left}");
         }
+    }
+
+    /// A first minute of two modes told a time after which the slower one was still there, as one that would be enough.
+    #[test]
+    fn regress_a_gap_that_falls_more_and_more_slowly_is_seen() {
+        let t_s: Vec<f64> = (0..=400).map(|row| 0.1 * f64::from(row)).collect();
+        let slows = |gap: &dyn Fn(f64) -> f64| is_slowing(&t_s, &t_s.iter().map(|t_s| gap(*t_s)).collect::<Vec<_>>());
+        let slow = |t_s: f64| 0.05 * (-0.02 * t_s).exp();
+        assert!(!slows(&|t_s| (-0.1 * t_s).exp()) && !slows(&slow), "one mode");
+        assert!(slows(&|t_s| (-0.2 * t_s).exp() + slow(t_s)), "a slower one takes over");
+        assert!(!slows(&|t_s| (-0.4 * t_s).exp() + 20.0 * slow(t_s)), "it has taken over");
+        // The same under a wave, of which only the largest values count.
+        let waves = |t_s: f64| (5.0 * t_s).cos().abs();
+        assert!(!slows(&|t_s| waves(t_s) * (-0.1 * t_s).exp()));
+        assert!(slows(&|t_s| waves(t_s) * ((-0.2 * t_s).exp() + slow(t_s))));
+        assert!(!slows(&|_| 1.0) && !slows(&|_| 0.0) && !slows(&|t_s| t_s));
     }
 
     #[test]

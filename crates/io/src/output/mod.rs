@@ -104,7 +104,7 @@ pub use remark::Remark;
 pub use residuals::{residual_document, residual_lines};
 pub use restore::SavedRun;
 pub use restore_error::{RestoreError, SummaryError, TableError};
-pub use sampling_limit::{Accepted, Deployment, Rule, SamplingLimit, Trial};
+pub use sampling_limit::{Accepted, Deployment, Measuring, Rule, SamplingLimit, Trial};
 pub use smoothness::{
     FilteredInput, LargestInputJump, NothingSaid, SMOOTHNESS_FORMAT, SmoothInput, SmoothOrder, SmoothScenario,
     SmoothnessDocument, SmoothnessFound,

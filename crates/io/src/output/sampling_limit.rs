@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use forwardstep_check::{Hold, SamplingMargin, WholeLoop};
-use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::recording::{Ending, Progress, Signal};
 use forwardstep_sim::{Control, Setup, SetupError, VelocitySensor, simulate};
 
 use super::metrics::{Disagreement, Metrics};
@@ -68,6 +68,20 @@ pub struct Trial {
     pub initial: f64,
 }
 
+/// What is seen of a measurement while it goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measuring {
+    /// A run made a step.
+    Runs {
+        /// Its period, s.
+        period_s: f64,
+        /// How far it is.
+        progress: Progress,
+    },
+    /// A run ended.
+    Ran(Trial),
+}
+
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplingLimit {
@@ -126,7 +140,7 @@ impl Deployment {
 }
 
 impl SamplingLimit {
-    /// Measures it; `watch` is called after every run.
+    /// Measures it; `watch` is called after every step, and after every run.
     ///
     /// # Errors
     /// [`SetupError`] when the setup has no meaning.
@@ -134,7 +148,7 @@ impl SamplingLimit {
         setup: &Setup,
         deployment: Deployment,
         accepted: Accepted,
-        watch: &mut dyn FnMut(Trial),
+        watch: &mut dyn FnMut(Measuring),
     ) -> Result<SamplingLimit, SetupError> {
         let rule = deployment.rule(setup);
         let stated_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
@@ -142,9 +156,9 @@ impl SamplingLimit {
         let first_s = first_s.max(1.001 * deployment.delay_s(setup, first_s));
         let mut trials = Vec::new();
         let mut run = |period_s: f64| {
-            let trial = trial(&deployment.apply(setup, period_s), period_s)?;
+            let trial = trial(&deployment.apply(setup, period_s), period_s, watch)?;
             trials.push(trial);
-            watch(trial);
+            watch(Measuring::Ran(trial));
             Ok::<Trial, SetupError>(trial)
         };
         // One that does not come closer is no measure for others: the rule knows s alone, and what is around it may need shorter periods.
@@ -191,8 +205,11 @@ fn bisect(mut low_s: f64, mut works: impl FnMut(f64) -> Result<bool, SetupError>
 }
 
 /// Runs `setup` in full.
-fn trial(setup: &Setup, period_s: f64) -> Result<Trial, SetupError> {
-    let outcome = simulate(setup, &mut |_| ControlFlow::Continue(()))?;
+fn trial(setup: &Setup, period_s: f64, watch: &mut dyn FnMut(Measuring)) -> Result<Trial, SetupError> {
+    let outcome = simulate(setup, &mut |progress| {
+        watch(Measuring::Runs { period_s, progress });
+        ControlFlow::Continue(())
+    })?;
     let (initial, last) = match Metrics::of(setup, &outcome.recording, None, None).disagreement {
         Disagreement::Measured { initial, last, .. } => (initial, last),
         Disagreement::Absent(_) => (0.0, 0.0),

@@ -58,6 +58,7 @@ const WISHES: &[(&[&str], &str)] = &[
             "avoidance",
             "avoid",
             "environment",
+            "world",
             "walls",
             "wall",
             "safety",
@@ -139,18 +140,13 @@ const WISHES: &[(&[&str], &str)] = &[
     ),
 ];
 
-/// The place of what has another name here, as `quadrotor`.
-pub fn called_here(word: &str) -> Option<&'static str> {
-    found(NAMES, &word.to_ascii_lowercase())
-}
-
-/// That a key or a choice asks for something that has another name or is not modelled, and what is nearest to it.
-pub(super) fn beyond(word: &str) -> Option<String> {
+/// That a key, a choice or a name asks for something that has another name here, as `quadrotor`, or is not modelled, and what is nearest to it.
+pub fn beyond(word: &str) -> Option<String> {
     let word = word.to_ascii_lowercase();
     if word.split(SEPARATORS).any(|part| part == "gravity") {
         return Some("gravity is said of each robot: `robot.urdf.gravity_m_s2 = [0, 0, -9.81]`, `robot.planar_arm.gravity_m_s2 = 9.81`".into());
     }
-    if let Some(name) = called_here(&word) {
+    if let Some(name) = found(NAMES, &word) {
         return Some(name.to_owned());
     }
     let nearest = found(WISHES, &word)?;

@@ -340,7 +340,9 @@ impl Problem for UrdfProblem {
             }
             UrdfProblem::SeveralBases { .. } => "hold the other one by a fixed joint".to_owned(),
             UrdfProblem::UnsupportedJointType { given, .. } => match given.as_str() {
-                "floating" => "only robots on a fixed base are modelled; make the joint fixed".to_owned(),
+                "floating" => "only robots on a fixed base are modelled; make the joint fixed, or take a kind that moves freely: `robot.vehicle`, \
+                               `robot.rotorcraft`, `robot.spacecraft` or `robot.ship`"
+                    .to_owned(),
                 "planar" => "write it as two prismatic joints and a revolute one, through light links".to_owned(),
                 _ => "write it as three revolute joints whose axes meet, through light links".to_owned(),
             },

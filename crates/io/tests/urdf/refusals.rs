@@ -250,7 +250,7 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
         (
             with_joint("floating", ""),
             default(),
-            "r.urdf:4:26: joint `turn` is floating; only revolute, continuous, prismatic and fixed joints are modelled\n  help: only robots on a fixed base are modelled; make the joint fixed",
+            "r.urdf:4:26: joint `turn` is floating; only revolute, continuous, prismatic and fixed joints are modelled\n  help: only robots on a fixed base are modelled; make the joint fixed, or take a kind that moves freely: `robot.vehicle`, `robot.rotorcraft`, `robot.spacecraft` or `robot.ship`",
         ),
         (
             with_joint("planar", ""),

@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 use forwardstep::io::robot::{OpenRobotError, open_robot};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::scenario::{
-    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, called_here,
-    shipped_scenario,
+    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, beyond, shipped_scenario,
 };
 use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, SHIPPED_ROBOTS, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
@@ -58,6 +57,8 @@ enum NewError {
     LedLate,
     #[error("each `{}` follows a target of its own, and has no neighbours", shown(.0))]
     NoNeighbours(String),
+    #[error("`{}` is a file, and `--like` takes the name of a scenario that is shipped", shown(.0))]
+    LikeFile(String),
 }
 
 /// A name that is no kind of robot, no shipped robot and no file.
@@ -95,6 +96,9 @@ impl NewError {
                 Some("see `forwardstep new --like leader-over-late-links`, which comes as near as the delays let it")
             }
             NewError::NoNeighbours(_) => Some("leave `--order`, `--exchange`, `--graph`, `--delay` and `--leader` out"),
+            NewError::LikeFile(_) => {
+                Some("copy the file instead; `forwardstep scenarios` lists those that are shipped")
+            }
         }
     }
 }
@@ -177,7 +181,10 @@ fn read(template: &Template, options: &NewOptions, kinds: &Kinds) -> Result<Scen
 /// The text of a shipped scenario. Tables that it names are found wherever it is.
 fn copied(name: &str) -> Result<String, Status> {
     let shipped = shipped_scenario(name.trim_end_matches(".toml"));
-    let unknown = || complain(&OpenError::Unknown { name: name.to_owned() });
+    let unknown = || match Path::new(name).exists() {
+        true => refused(NewError::LikeFile(name.to_owned())),
+        false => complain(&OpenError::Unknown { name: name.to_owned() }),
+    };
     shipped.map(|shipped| shipped.text.to_owned()).ok_or_else(unknown)
 }
 
@@ -269,7 +276,7 @@ fn robot(name_or_path: &str, scenario: Option<&Path>, kinds: &Kinds) -> Result<R
         OpenRobotError::Unknown { name } => {
             let kinds = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some());
             let all: Vec<&str> = kinds.chain(SHIPPED_ROBOTS.map(|(name, _)| name)).collect();
-            let known = match called_here(&name) {
+            let known = match beyond(&name) {
                 Some(here) => format!("{here}; {}", choose("", "robots are", &all)),
                 None => choose(&name.replace('-', "_"), "robots are", &all),
             };
