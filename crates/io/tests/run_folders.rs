@@ -201,4 +201,18 @@ fn regress_copies_of_inputs_that_were_edited_are_kept() {
         fs::write(&path, before).unwrap();
     }
     assert!(RunFolder::create(&out, true).is_ok());
+    // Nor is one replaced that stands where a copy of this run comes to stand for the first time.
+    let run = RunFolder::create(&out, true).unwrap();
+    fs::write(&scenario, CARTS.replace("edges.csv\"", "more.csv\"")).unwrap();
+    fs::copy(folder.path().join("mine/edges.csv"), folder.path().join("mine/more.csv")).unwrap();
+    let mine = out.join("inputs/more.csv");
+    fs::write(&mine, "mine").unwrap();
+    match run_into(&run, &scenario) {
+        Err(OutputError::Changed { path: changed }) => assert_eq!(changed, mine),
+        other => panic!("{other:?}"),
+    }
+    assert!(out.join("summary.json").exists() && out.join("inputs/edges.csv").exists(), "nothing was changed");
+    fs::remove_file(&mine).unwrap();
+    run_into(&run, &scenario).unwrap();
+    assert!(!out.join("inputs/edges.csv").exists() && !out.join(".summary.json.replaced").exists());
 }

@@ -1,21 +1,27 @@
-//! The folder of a run, and files that appear in it only when they are complete.
+//! The folder of a run.
 
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::claim::{Claim, Stands};
 use super::comparison::{DOCUMENT, PAGE};
-use super::disk::{Disk, DiskFile, SystemDisk};
-use super::error::{Action, EncodeError, OutputError};
+use super::disk::{Disk, SystemDisk};
+use super::earlier::Left;
+use super::error::{Action, OutputError};
 use super::journal::{self, JOURNAL};
-use super::{earlier, growing, inputs};
+use super::staging::Staging;
+use super::{earlier, growing};
 use crate::scenario::inputs::INPUTS;
 use crate::scenario::run_folder::MANIFEST;
 
 /// The file whose presence says that a folder is complete: removed first and renamed last.
 pub(super) const SEAL: &str = "summary.json";
+/// That of a run which gives its files their names.
+pub(super) const NEW_SEAL: &str = ".summary.json.partial";
+/// That of the run which it replaces, until it has.
+pub(super) const OLD_SEAL: &str = ".summary.json.replaced";
 
 /// Every file that a run may write, but for the copies of its inputs.
 pub(crate) const FILES: [&str; 14] = [
@@ -175,21 +181,19 @@ impl RunFolder {
         }
     }
 
-    /// Refuses where a file of somebody else stands under the name of one that will be written here in the place of an earlier run's.
-    ///
-    /// # Errors
-    /// [`OutputError::Changed`] with the file, [`OutputError::NotOfARun`] where no run wrote the folder.
-    pub(super) fn keeps_nothing(&self) -> Result<(), OutputError> {
-        earlier::may_be_replaced(&self.path)
-    }
-
     /// Starts to write files into it.
     pub(crate) fn stage(&self) -> Staging<'_> {
-        Staging { folder: self, names: Vec::new(), names_files: false }
+        Staging::new(self, None)
+    }
+
+    /// Starts to write all files of a run, in the place of those of an earlier one.
+    pub(crate) fn stage_run(&self) -> Staging<'_> {
+        // Before the seal that tells of them is written anew.
+        Staging::new(self, Some(Left::of(&self.path)))
     }
 
     /// Removes the folders between this one and a file of it that are empty.
-    fn remove_empty_above(&self, name: &str) {
+    pub(super) fn remove_empty_above(&self, name: &str) {
         for above in Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty()) {
             let _ = fs::remove_dir(self.path.join(above)); // only succeeds when it is empty
         }
@@ -235,6 +239,7 @@ fn is_empty(path: &Path, among_inputs: bool) -> Result<bool, OutputError> {
             continue;
         }
         let is_leftover = name == ".forwardstep.partial"
+            || name == OLD_SEAL
             || name == format!(".{JOURNAL}.partial")
             || growing::is_partial(&name)
             || [PAGE, DOCUMENT].iter().any(|file| name == format!(".{file}.partial"))
@@ -270,7 +275,7 @@ fn in_the_way<'n>(path: &Path, names: impl Iterator<Item = &'n str>) -> Result<(
 }
 
 /// Refuses where a folder on the way to a file of a run is a link: what it leads to is not the run's.
-fn unlinked(path: &Path, name: &str) -> Result<(), OutputError> {
+pub(super) fn unlinked(path: &Path, name: &str) -> Result<(), OutputError> {
     let above = Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty());
     match above.map(|above| path.join(above)).find(|above| above.is_symlink()) {
         Some(path) => Err(OutputError::InTheWay { path, found: "a link to another folder" }),
@@ -281,183 +286,4 @@ fn unlinked(path: &Path, name: &str) -> Result<(), OutputError> {
 pub(super) fn io_error(action: Action, path: &Path) -> impl FnOnce(io::Error) -> OutputError {
     let path = path.to_owned();
     move |source| OutputError::Io { action, path, source }
-}
-
-/// Files written under temporary names; those that were not [published](Staging::publish) vanish when this is dropped.
-pub(crate) struct Staging<'f> {
-    folder: &'f RunFolder,
-    names: Vec<String>,
-    /// Whether the seal of an earlier run is gone and files get their names. If that fails, the new seal under its temporary name says that what
-    /// stands there is a run's.
-    names_files: bool,
-}
-
-impl Staging<'_> {
-    /// Writes one file under its temporary name, to the disk.
-    pub(crate) fn write(
-        &mut self,
-        name: &str,
-        fill: impl FnOnce(&mut StagedFile) -> Result<(), FillError>,
-    ) -> Result<Written, OutputError> {
-        self.folder.ready()?;
-        let (disk, path) = (self.folder.disk(), self.folder.path.join(name));
-        unlinked(&self.folder.path, name)?;
-        let partial = self.folder.partial(name);
-        if let Some(parent) = partial.parent() {
-            disk.create_folders(parent).map_err(io_error(Action::CreateFolder, parent))?;
-        }
-        let _ = disk.remove_file(&partial); // of a writer that was killed
-        let file = disk.create_file(&partial).map_err(io_error(Action::CreateFile, &path))?;
-        self.names.push(name.to_owned());
-        let mut staged = StagedFile::new(file);
-        let filled = fill(&mut staged).and_then(|()| staged.finish().map_err(FillError::Io));
-        let failed = |error| match (staged.failure.take(), error) {
-            (Some(source), _) | (None, FillError::Io(source)) => {
-                OutputError::Io { action: Action::WriteFile, path, source }
-            }
-            (None, FillError::Encode(reason)) => OutputError::Encode { path, reason },
-        };
-        match filled {
-            Ok(()) => Ok(Written { digest: staged.digest.finalize(), bytes: staged.digest.count() }),
-            Err(error) => Err(failed(error)),
-        }
-    }
-
-    /// Writes a text.
-    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<Written, OutputError> {
-        self.write(name, |out| Ok(out.write_all(text.as_bytes())?))
-    }
-
-    /// Gives all files their names, the seal last, and removes those of an earlier run that this one did not write. The journal goes
-    /// when all of them would survive a power cut, unless it `keeps` something that they have not.
-    pub(crate) fn publish(mut self, keeps: bool) -> Result<Vec<PathBuf>, OutputError> {
-        let folder = self.folder;
-        folder.ready()?;
-        let earlier = inputs::of_earlier_run(&folder.path);
-        let remove = |name: &str| {
-            unlinked(&folder.path, name)?;
-            let path = folder.path.join(name);
-            match folder.disk().remove_file(&path) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                    Err(io_error(Action::RemoveFile, &path)(error))
-                }
-                _ => Ok(()),
-            }
-        };
-        remove(SEAL)?;
-        self.names_files = true;
-        let is_old = |name: &str| !self.names.iter().any(|new| new == name);
-        for name in FILES.into_iter().chain(earlier.iter().map(String::as_str)).filter(|name| is_old(name)) {
-            remove(name)?;
-            let _ = folder.disk().remove_file(&folder.partial(name)); // of a writer that was killed
-            folder.remove_empty_above(name);
-        }
-        self.names.sort_by_key(|name| *name == SEAL);
-        let published = self.name_all()?;
-        if !keeps && folder.path.join(JOURNAL).exists() {
-            // Where it stays, readers see by the seal that it is over.
-            let synced = folder.disk().sync_folder(&folder.path);
-            let _ = synced.and_then(|()| folder.disk().remove_file(&folder.path.join(JOURNAL)));
-        }
-        Ok(published)
-    }
-
-    /// Gives all files their names and leaves everything else in the folder as it is.
-    pub(crate) fn replace(self) -> Result<Vec<PathBuf>, OutputError> {
-        self.name_all()
-    }
-
-    fn name_all(self) -> Result<Vec<PathBuf>, OutputError> {
-        let folder = self.folder;
-        let mut published = Vec::new();
-        for name in &self.names {
-            folder.ready()?;
-            let path = folder.path.join(name);
-            folder.disk().rename(&folder.partial(name), &path).map_err(io_error(Action::RenameFile, &path))?;
-            published.push(path);
-        }
-        Ok(published)
-    }
-}
-
-impl Drop for Staging<'_> {
-    fn drop(&mut self) {
-        if self.folder.is_elsewhere() {
-            return;
-        }
-        for name in self.names.iter().filter(|name| !(self.names_files && *name == SEAL)) {
-            let _ = self.folder.disk().remove_file(&self.folder.partial(name));
-            self.folder.remove_empty_above(name);
-        }
-    }
-}
-
-/// What was written.
-pub(crate) struct Written {
-    pub(crate) digest: blake3::Hash,
-    pub(crate) bytes: u64,
-}
-
-/// Why a file could not be filled.
-pub(crate) enum FillError {
-    Io(io::Error),
-    Encode(EncodeError),
-}
-
-impl From<io::Error> for FillError {
-    fn from(error: io::Error) -> Self {
-        FillError::Io(error)
-    }
-}
-
-impl<E: Into<EncodeError>> From<E> for FillError {
-    fn from(error: E) -> Self {
-        FillError::Encode(error.into())
-    }
-}
-
-/// A file under its temporary name, which remembers the system's refusal whatever an encoder makes of it.
-pub(crate) struct StagedFile {
-    file: BufWriter<Box<dyn DiskFile>>,
-    failure: Option<io::Error>,
-    /// Of what was written so far.
-    digest: blake3::Hasher,
-}
-
-impl StagedFile {
-    fn new(file: Box<dyn DiskFile>) -> Self {
-        StagedFile { file: BufWriter::with_capacity(1 << 16, file), failure: None, digest: blake3::Hasher::new() }
-    }
-
-    fn finish(&mut self) -> io::Result<()> {
-        self.flush()?;
-        let synced = self.file.get_mut().sync();
-        self.watch(synced)
-    }
-
-    fn watch<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
-        if let Err(error) = &result {
-            let copy = match error.raw_os_error() {
-                Some(code) => io::Error::from_raw_os_error(code),
-                None => io::Error::new(error.kind(), error.to_string()),
-            };
-            self.failure.get_or_insert(copy);
-        }
-        result
-    }
-}
-
-impl Write for StagedFile {
-    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        let result = self.file.write(buffer);
-        if let Some(written) = result.as_ref().ok().and_then(|written| buffer.get(..*written)) {
-            self.digest.update(written);
-        }
-        self.watch(result)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let result = self.file.flush();
-        self.watch(result)
-    }
 }

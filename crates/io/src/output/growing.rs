@@ -11,7 +11,8 @@ use super::record::RunRecord;
 use super::restore::SavedRun;
 use super::{metrics, report};
 
-const PAGE: &str = "report.html";
+/// Its name.
+pub(super) const PAGE: &str = "report.html";
 
 /// Whether a file is what is left of a page whose writer was killed.
 pub(super) fn is_partial(name: &str) -> bool {

@@ -5,11 +5,10 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
 use toml::Table;
 
 use super::summary::Input;
-use crate::files::{ReadError, open_file, read_text};
+use crate::files::{ReadError, open_file};
 use crate::scenario::InputFile;
 use crate::scenario::inputs::{INPUTS, plain_name};
 use crate::scenario::run_folder::MANIFEST;
@@ -46,22 +45,6 @@ fn clash(one: &str, other: &str) -> bool {
     let (one, other) = (one.to_lowercase(), other.to_lowercase());
     let below = |long: &str, short: &str| long.strip_prefix(short).is_some_and(|rest| rest.starts_with('/'));
     one == other || below(&one, &other) || below(&other, &one)
-}
-
-/// The copies that an earlier run left in `folder` and that are unchanged since.
-pub(crate) fn of_earlier_run(folder: &Path) -> Vec<String> {
-    /// The part of a summary that matters here, whatever its format.
-    #[derive(Deserialize)]
-    struct Inputs {
-        #[serde(default)]
-        inputs: Vec<Input>,
-    }
-    let text = read_text(&folder.join("summary.json")).unwrap_or_default();
-    let Ok(Inputs { inputs }) = serde_json::from_str(&text) else { return Vec::new() };
-    let own = inputs.into_iter().filter(|input| is_copy(&input.file));
-    own.filter(|input| file_digest(&folder.join(&input.file)).is_ok_and(|digest| digest == input.digest_blake3))
-        .map(|input| input.file)
-        .collect()
 }
 
 /// The BLAKE3 digest of a text, in hexadecimal.

@@ -66,6 +66,7 @@ mod restore_error;
 mod restore_journal;
 mod sampling_limit;
 mod smoothness;
+mod staging;
 mod stored_table;
 pub mod summary;
 mod table;
@@ -86,7 +87,6 @@ pub use error::{Action, EncodeError, OutputError};
 pub use explanation::{EXPLANATION_FORMAT, TextLine, explanation_document, explanation_latex, explanation_lines};
 pub use findings::{Checked, FINDINGS_FORMAT, Findings, PredictedAgreement};
 pub use folder::RunFolder;
-use folder::{Staging, Written};
 pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, GuaranteedRepeat};
 pub use injected::{FirstInjection, Injected, InjectedCourse};
 pub use inputs::digest;
@@ -109,6 +109,7 @@ pub use smoothness::{
     FilteredInput, LargestInputJump, NothingSaid, SMOOTHNESS_FORMAT, SmoothInput, SmoothOrder, SmoothScenario,
     SmoothnessDocument, SmoothnessFound,
 };
+use staging::{Staging, Written};
 pub use stored_table::ParquetProblem;
 
 use crate::scenario::run_folder::{Copied, MANIFEST, Manifest};
@@ -145,7 +146,7 @@ fn write_all(
 ) -> Result<Vec<PathBuf>, OutputError> {
     let recording = &record.outcome.recording;
     let metrics = metrics(record);
-    let mut staging = folder.stage();
+    let mut staging = folder.stage_run();
     staging.write_text("scenario.toml", record.scenario_text)?;
     let mut copied = HashSet::new();
     let mut listed = Vec::new();

@@ -185,10 +185,7 @@ impl SavedRun {
         };
         match self.saved.left_out {
             None => super::write_report(folder, record),
-            Some(left_out) => {
-                folder.keeps_nothing()?;
-                super::write_all(folder, record, super::Options::default(), left_out > 0)
-            }
+            Some(left_out) => super::write_all(folder, record, super::Options::default(), left_out > 0),
         }
     }
 }

@@ -347,8 +347,10 @@ fn regress_files_of_others_beside_a_journal_are_kept() {
         "holds.csv",
         "shapes.json",
         "inputs/manifest.json",
+        "plots/positions.svg",
     ] {
         let file = path.join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
         fs::write(&file, "mine").unwrap();
         let run = SavedRun::look_with(path, &Kinds::shipped()).unwrap();
         let reported = run.write_report(&run.record(&carts.1, None, &[])).map(|_| ());
@@ -356,6 +358,7 @@ fn regress_files_of_others_beside_a_journal_are_kept() {
             assert!(matches!(&refused, Err(OutputError::Changed { path }) if *path == file), "{name}: {refused:?}");
         }
         assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
+        assert!(path.join(JOURNAL).exists() && !path.join("summary.json").exists(), "{name}: nothing was changed");
         fs::remove_file(&file).unwrap();
     }
     // What the run would write itself may stand there, and so may what a growing page left.
@@ -367,8 +370,49 @@ fn regress_files_of_others_beside_a_journal_are_kept() {
         assert!(matches!(RunFolder::create(path, true), Err(OutputError::NotOfARun { .. })), "{head}");
         assert!(matches!(RunFolder::create(path, false), Err(OutputError::FolderNotEmpty { cut_off: false, .. })));
     }
-    // A run that was killed while it wrote its summary had given no file its name yet.
+    // Half a summary says nothing of what stands beside it.
     fs::remove_file(path.join(JOURNAL)).unwrap();
     fs::write(path.join(".summary.json.partial"), "{").unwrap();
     assert!(matches!(RunFolder::create(path, true), Err(OutputError::NotOfARun { .. })));
+}
+
+/// Who wrote the tables of a run that was cut off, and was killed while files got their names, left some of them; and who tried again and was killed
+/// before the new summary was whole left nothing that tells of them. They are as they would be written.
+#[test]
+fn regress_files_that_an_interrupted_report_left_are_known_by_what_they_hold() {
+    let (carts, folder) = (carts(), tempfile::tempdir().unwrap());
+    let (path, whole) = (folder.path().join("run"), folder.path().join("whole"));
+    for path in [&path, &whole] {
+        fs::create_dir(path).unwrap();
+        fs::write(path.join(JOURNAL), journal(false).0).unwrap();
+    }
+    let report = |path: &std::path::Path| {
+        let run = SavedRun::look_with(path, &Kinds::shipped()).unwrap();
+        run.write_report(&run.record(&carts.1, None, &[])).map(|_| ())
+    };
+    report(&whole).unwrap();
+    for left in ["scenario.toml", "trajectory.parquet", "plots/torques.svg"] {
+        fs::create_dir_all(path.join("plots")).unwrap();
+        fs::copy(whole.join(left), path.join(left)).unwrap();
+    }
+    let bytes = fs::read(path.join(JOURNAL)).unwrap();
+    report(&path).unwrap();
+    assert!(!path.join(JOURNAL).exists());
+    // The same with the new summary under its temporary name, as it is left beside what has got its own.
+    fs::rename(path.join("summary.json"), path.join(".summary.json.partial")).unwrap();
+    fs::write(path.join(JOURNAL), &bytes).unwrap();
+    assert!(RunFolder::create(&path, true).is_ok());
+    for (name, text) in [("scenario.toml", "mine"), ("trajectory.csv", "mine")] {
+        let before = fs::read(path.join(name)).ok();
+        fs::write(path.join(name), text).unwrap();
+        for refused in [report(&path), RunFolder::create(&path, true).map(|_| ())] {
+            assert!(matches!(refused, Err(OutputError::Changed { .. })), "{name}: {refused:?}");
+        }
+        match before {
+            Some(bytes) => fs::write(path.join(name), bytes).unwrap(),
+            None => fs::remove_file(path.join(name)).unwrap(),
+        }
+    }
+    report(&path).unwrap();
+    assert!(path.join("summary.json").exists() && !path.join(".summary.json.partial").exists());
 }
