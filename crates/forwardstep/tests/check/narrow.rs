@@ -118,7 +118,7 @@ fn regress_a_ship_on_the_edge_of_a_singular_inertia_is_refused() {
 #[test]
 fn regress_a_push_that_is_zero_from_some_time_on_ends() {
     let pushed = |force: &str| masses(&format!("[[external_wrenches]]\non = [\"m-1\"]\nby.force_n = [{force}]\n"));
-    for ends in ["\"0.75 - 0.5 - 0.25\"", "0", "\"max(0, 5 - t)\"", "\"min(1, max(0, 700 - t))\""] {
+    for ends in ["\"0.1 + 0.2 - 0.3\"", "0", "\"max(0, 5 - t)\"", "\"min(1, max(0, 700 - t))\""] {
         assert_eq!(answer(&pushed(ends), "pushes-end"), "holds", "{ends}");
     }
     for stays in ["1e-300", "\"exp(-t)\"", "\"max(0, sin(t))\"", "\"max(0, t - 50)\""] {
@@ -221,7 +221,7 @@ fn regress_a_factor_of_the_input_that_is_zero_where_the_run_begins_is_refuted() 
     let of = |psi: &str| {
         answer(&chains(&format!("chain = {{ order = 2, psi = \"{psi}\" }}"), "linearising"), "input-factor")
     };
-    for zero in ["x - x", "x - 1", "0.75 - 0.5 - 0.25 + 0*x", "(x - 1)^2"] {
+    for zero in ["x - x", "x - 1", "0.1 + 0.2 - 0.3 + 0*x", "(x - 1)^2"] {
         assert_eq!(of(zero), "violated", "{zero}");
     }
     assert_eq!((of("x").as_str(), of("2 + sin(x)").as_str()), ("watched during the run", "holds"));

@@ -28,8 +28,6 @@ use super::formula_problem::{A_VALUE, A_VALUE_OF_VARIABLES, AN_OPERATOR, CHOICES
 use super::formula_text::FormulaText;
 use super::value_problem::ValueProblem;
 
-/// A sum of numbers that is computed with a larger error, as a part of it, is refused.
-const CANCELLED: f64 = 1e-6;
 /// Parentheses, signs, powers and operators within each other: the reader calls itself for each.
 pub(super) const MOST_NESTED: usize = 128;
 
@@ -130,15 +128,10 @@ impl<'a> Parser<'a> {
         if self.peek().is_some() {
             return Err(self.unexpected(AN_OPERATOR));
         }
-        let at = 0..self.text.len();
-        let fault = |problem| FormulaFault { problem, at };
         // Its length was counted, and every operator has its operands.
         match Expression::new(self.steps) {
-            Ok(formula) => match formula.cancels(CANCELLED) {
-                Some([exact, computed]) => Err(fault(FormulaProblem::Cancels { exact, computed })),
-                None => Ok(formula),
-            },
-            Err(_) => Err(fault(FormulaProblem::TooLong)),
+            Ok(formula) => Ok(formula.with_exact_constants()),
+            Err(_) => Err(FormulaFault { problem: FormulaProblem::TooLong, at: 0..self.text.len() }),
         }
     }
 

@@ -115,14 +115,6 @@ pub enum FormulaProblem {
         /// What was written.
         found: String,
     },
-    /// Numbers of which the difference has none of its digits in floating point: checks know it exactly, and no run does.
-    #[error("numbers in it cancel: what is {exact} is computed as {computed:e}")]
-    Cancels {
-        /// What their sum or difference is.
-        exact: f64,
-        /// As what it is computed.
-        computed: f64,
-    },
     /// An exponent in which a variable appears.
     #[error("the exponent changes with {of}")]
     VaryingExponent {
@@ -181,7 +173,6 @@ impl FormulaProblem {
             FormulaProblem::NumberTooLong { .. } => {
                 format!("numbers may have {MOST_DIGITS} digits and be as small as 1e-300; they are kept exactly as they are written")
             }
-            FormulaProblem::Cancels { .. } => "write the number that they come to".into(),
             FormulaProblem::TooLong => {
                 "long functions of time may be given by points instead".into()
             }
