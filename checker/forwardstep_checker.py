@@ -746,7 +746,7 @@ def designed(key, body):
     roots, heard, tracks = roots_of(own), [exact(number, "heard") for number in body.get("heard", [])], body.get("follows_target", False)
     zeros, told, places = own.get("integrators", 0), "position_velocity" if heard[1:] else "position", body.get("written_in", "measured")
     product = polynomial({"roots_per_s": own["roots_per_s"]})[0] if roots else None
-    same = zeros == 1 and set(coupled) == {"roots_per_s"} and sorted(roots_of(coupled)) == sorted(roots) and places == "measured"
+    same = zeros == 1 and not coupled.get("integrators", 0) and sorted(roots_of(coupled)) == sorted(roots) and places == "measured"
     agrees = same and heard[:1] in ([], [product]) and all(not b and v * a == product for v in heard[1:] for a, b in roots[:1])
     if not (roots and (alone(body) and not zeros if tracks else agrees and "nonlinear" not in body)):
         return False, polynomial(body["polynomial"]), (key, body)

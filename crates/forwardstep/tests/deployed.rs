@@ -354,22 +354,39 @@ fn regress_limits_that_drive_the_robots_instead_of_the_law_are_told() {
     };
     let folder = folder();
     for (limits, answer, part) in [
-        ("torque_limit = 0.5", "inadequate", "in a trial of 20 s limits of torques change "),
+        ("torque_limit = 0.5", "inadequate", "in a trial of the whole run limits of torques change "),
         ("torque_rate_limit_per_s = 0.5", "inadequate", "limits of torque rates change "),
-        ("torque_limit = 1.5", "not shown", "what is said of the law"),
-        ("torque_limit = 7", "adequate", "they change none of 1200 commands"),
+        ("torque_limit = 1.5", "not shown", "do not apply to this loop"),
+        ("torque_limit = 2", "marginal", "apply while they change none"),
+        ("torque_limit = 0.5\ntorque_rate_limit_per_s = 0.5", "inadequate", " and limits of their rates "),
+        ("torque_limit = 7", "adequate", "in a trial of the whole run none of 1200 commands does"),
     ] {
         let found = checked(&folder, &scenario(limits));
         let clipped = found.iter().find(|one| one["id"] == "clipped-commands").unwrap();
         assert_eq!(clipped["answer"], answer, "{limits}: {clipped}");
         assert!(clipped["because"].as_str().unwrap().contains(part), "{limits}: {clipped}");
+        assert!((0.0..=1.0).contains(&clipped["numbers"]["share"].as_f64().unwrap()), "{clipped}");
     }
+    // Of a run that takes too much work the beginning is tried, which says nothing of a push that comes later.
+    let long = scenario("torque_limit = 7")
+        .replace("time.end_s = 20", "time = { end_s = 3000, record_every_s = 1 }")
+        .replace("sample_hz = 20", "sample_hz = 1000");
+    let found = checked(&folder, &long);
+    let clipped = found.iter().find(|one| one["id"] == "clipped-commands").unwrap();
+    assert_eq!(clipped["answer"], "not shown", "{clipped}");
+    assert!(
+        clipped["because"].as_str().unwrap().contains("the first 2.048 s, which is no whole run, none of"),
+        "{clipped}"
+    );
     let found = checked(&folder, &scenario(""));
     assert!(found.iter().all(|one| one["id"] != "clipped-commands"), "no limits");
     fs::write(folder.path().join("loop.toml"), scenario("torque_limit = 0.5")).unwrap();
     let arguments =
         ["check", "loop.toml", "--practical", "--predict", "--accept", "continuous-time", "--accept", "applied-torque"];
     let said = stdout(&forwardstep(&folder, &arguments).code(1));
-    assert!(said.contains("limits keep it from that: m-1, axis 1 would need 2.047 of 0.500"), "{said}");
+    assert!(
+        said.contains("m-1, axis 1 needs 2.047 N, above its limit of 0.500 N; the run will differ from this"),
+        "{said}"
+    );
     assert!(said.contains("(but controllers sample, which can delay it)"), "{said}");
 }

@@ -8,13 +8,13 @@ use forwardstep_sim::{ClippedSamples, RecordAt, Setup, TimeSpan};
 use super::PracticalAnswer;
 use crate::prediction::trial;
 
-/// Periods that are tried at most.
+/// Work for a trial to the end of the run, in nanoseconds, roughly.
+const WORK: f64 = 4e8;
+/// Periods that are tried where that is not enough.
 const PERIODS: f64 = 2048.0;
-/// Work for them, in nanoseconds, roughly.
-const WORK: f64 = 2e8;
-/// As many as that are a moment, after which the loop is what it was.
-const MOMENT: f64 = 0.01;
-/// Where more are, limits and not the law drive the robots.
+/// Up to this share limits act in a short transient only.
+const TRANSIENT: f64 = 0.01;
+/// Above this share the limits, not the law, determine the motion.
 const MOST: f64 = 0.5;
 
 /// How many commands were changed in a trial.
@@ -24,6 +24,8 @@ pub struct ClippedCommands {
     pub of: ClippedSamples,
     /// How long the trial was, s.
     pub until_s: f64,
+    /// Whether that is as long as the run.
+    pub is_whole: bool,
 }
 
 impl ClippedCommands {
@@ -34,24 +36,29 @@ impl ClippedCommands {
         if actuators.torque_limit.is_none() && actuators.torque_rate_limit.is_none() {
             return None;
         }
-        let until_s = setup.time.end_s.min(PERIODS / control.sample_hz);
-        let time = TimeSpan { end_s: until_s, record_every_s: until_s, record_at: RecordAt::Intervals };
-        let of = trial(&Setup { time, ..setup.clone() }, WORK)?.statistics.clipped?;
-        Some(ClippedCommands { of, until_s })
+        let end_s = setup.time.end_s;
+        let tried = |until_s: f64| {
+            let time = TimeSpan { end_s: until_s, record_every_s: until_s, record_at: RecordAt::Intervals };
+            let of = trial(&Setup { time, ..setup.clone() }, WORK)?.statistics.clipped?;
+            Some(ClippedCommands { of, until_s, is_whole: until_s == end_s })
+        };
+        tried(end_s).or_else(|| tried(end_s.min(PERIODS / control.sample_hz)))
     }
 
-    /// Commands that were changed, as a part of all.
+    /// Commands that were changed, as a part of all; at least so many, where some meet both limits.
     pub fn share(&self) -> f64 {
-        (self.of.torque + self.of.rate) as f64 / self.of.samples.max(1) as f64
+        self.of.torque.max(self.of.rate) as f64 / self.of.samples.max(1) as f64
     }
 
     /// Whether what is said of the law is said of the loop.
     pub fn answer(&self) -> PracticalAnswer {
         match self.share() {
+            share if share > MOST => PracticalAnswer::Inadequate,
+            // What acts later, such as a push, was not seen.
+            _ if !self.is_whole => PracticalAnswer::NotShown,
             0.0 => PracticalAnswer::Adequate,
-            share if share <= MOMENT => PracticalAnswer::Marginal,
-            share if share <= MOST => PracticalAnswer::NotShown,
-            _ => PracticalAnswer::Inadequate,
+            share if share <= TRANSIENT => PracticalAnswer::Marginal,
+            _ => PracticalAnswer::NotShown,
         }
     }
 }

@@ -14,7 +14,7 @@ pub(super) fn about(finding: &Finding) -> &'static str {
         Finding::SamplingMargin(_) => "they sample fast enough for K and Γ",
         Finding::WholeLoop(_) => "the loop as a whole decays from sample to sample",
         Finding::StaticLoad(_) => "torques and thrusts within their limits hold the robots at rest",
-        Finding::ClippedCommands(_) => "limits leave what the law asks for as it is",
+        Finding::ClippedCommands(_) => "no command reaches a limit of the actuators",
         Finding::TrackingPower(_) => "how large s stays",
         Finding::TrackingDisagreement(_) => "what s adds to the disagreement",
     }
@@ -93,17 +93,22 @@ fn standing(load: &StaticLoad) -> String {
 
 fn clipped(found: &ClippedCommands) -> String {
     let ClippedSamples { samples, torque, rate } = found.of;
-    let until = format!("in a trial of {} s", rounded(found.until_s));
+    let until = if found.is_whole {
+        "in a trial of the whole run".to_owned()
+    } else {
+        format!("in a trial of the first {} s, which is no whole run,", rounded(found.until_s))
+    };
     let changed = match (torque, rate) {
-        (0, 0) => return format!("{until} they change none of {samples} commands"),
+        (0, 0) => return format!("{until} none of {samples} commands does"),
         (torque, 0) => format!("limits of torques change {torque}"),
         (0, rate) => format!("limits of torque rates change {rate}"),
         (torque, rate) => format!("limits of torques change {torque} and limits of their rates {rate}"),
     };
-    let so = if found.answer() == PracticalAnswer::Marginal {
-        "what is said here holds while they change none"
-    } else {
-        "what is said of the law, and what is predicted, is not said of this loop: raise them, or ask for less by smaller roots, weights and gains"
+    let so = match found.answer() {
+        PracticalAnswer::Marginal => "the verdicts and predictions here apply while they change none",
+        _ => {
+            "the verdicts and predictions here do not apply to this loop: raise the limits, or ask for less by smaller roots, weights and gains"
+        }
     };
     format!("{until} {changed} of {samples} commands; {so}")
 }

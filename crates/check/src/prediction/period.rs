@@ -23,6 +23,7 @@ use super::ideal::{NoIdeal, ideal};
 use super::repeats::{MOST_ROUNDS, Repeats};
 use super::roots::eigenvalues::eigenvalues;
 use super::unfinished::{Unfinished, completed};
+use crate::hypothesis::numbers::rounded;
 
 /// What a period leaves of a disagreement, for s ≡ 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +65,7 @@ pub enum NoPeriodRate {
         periods: usize,
     },
     /// The disagreement vanished within few periods.
-    #[error("after {} too little of the disagreement is left to see a factor", common(*periods, *period_s))]
+    #[error("after {periods} common {} of {} s too little of the disagreement is left to see a factor", if *periods == 1 { "period" } else { "periods" }, rounded(*period_s))]
     Vanishes {
         /// How many.
         periods: usize,
@@ -82,6 +83,10 @@ const ROWS: usize = 32;
 const PERIODS: [usize; 2] = [16, 512];
 /// Times the horizon of the run that the longest attempt may cover, unless the first one does more.
 const HORIZONS: f64 = 10.0;
+/// Periods of any attempt.
+const MOST_PERIODS: usize = 1 << 16;
+/// A rate that was seen before the work ran out is taken where single blocks of periods are no farther from it.
+const SURE: f64 = 0.02;
 /// Columns of an agent on one axis, roughly, and how many numbers may be recorded.
 const COLUMNS: usize = 8;
 const MOST_NUMBERS: usize = 20_000_000;
@@ -122,6 +127,7 @@ pub fn period_rate_within(
     let (least, most) = (periods, most.min(recorded));
     // Where that is not enough, so many periods are taken for one: their operator has the power of its eigenvalues.
     let mut together = 1;
+    let mut seen_before = None;
     loop {
         let block_s = period_s * together as f64;
         alone.time = TimeSpan {
@@ -129,30 +135,30 @@ pub fn period_rate_within(
             record_every_s: block_s / ROWS as f64,
             record_at: forwardstep_sim::RecordAt::Intervals,
         };
-        let recording = completed(&alone, None, &mut work, observer)?;
+        let recording = match completed(&alone, None, &mut work, observer) {
+            Ok(recording) => recording,
+            // What was seen in less time is better than nothing, where much of it had fallen.
+            Err(Unfinished::TooMuchWork { .. }) if let Some(found) = seen_before.take() => return Ok(found),
+            Err(unfinished) => return Err(unfinished.into()),
+        };
         let widths = CascadeSpread::of(&alone, &recording)?.widths();
         let each: Vec<f64> = (0..=periods).filter_map(|k| widths.get(k * ROWS)).copied().collect();
         let start = each.first().copied().unwrap_or(0.0);
         // The first is the start.
         let seen = each.iter().skip(1).take_while(|width| **width > FLOOR * start).count();
-        let ends = 2.0 * alone.time.end_s > HORIZONS * setup.time.end_s;
+        let ends = 2.0 * alone.time.end_s > HORIZONS * setup.time.end_s || 2 * together * periods > MOST_PERIODS;
         if seen < periods || each[periods] < FALLEN * start || ends {
             return factor(&each[..=seen], &apart(&recording), period_s, together);
         }
+        seen_before = factor(&each, &apart(&recording), period_s, together)
+            .ok()
+            .filter(|found| libm::pow(1.0 + found.wavers, together as f64) - 1.0 < SURE);
         if 2 * periods <= most {
             periods *= 2;
         } else {
             together *= 2 * periods / least;
             periods = least;
         }
-    }
-}
-
-fn common(periods: usize, period_s: f64) -> String {
-    let rounded = (1e4 * period_s).round() * 1e-4;
-    match periods {
-        1 => format!("one common period of {rounded} s"),
-        periods => format!("{periods} common periods of {rounded} s"),
     }
 }
 
@@ -188,6 +194,8 @@ fn factor(widths: &[f64], apart: &[DVector<f64>], period_s: f64, together: usize
     let wavers = widths[first..].windows(2).map(off).fold(0.0, f64::max);
     let rate_per_s = libm::log(factor) / (period_s * together as f64);
     let factor = libm::pow(factor, 1.0 / together as f64);
+    // So far are the factors of single periods from it where those of so many together are.
+    let wavers = libm::pow(1.0 + wavers, 1.0 / together as f64) - 1.0;
     Ok(PeriodRate { period_s, factor, rate_per_s, wavers, periods: together * periods })
 }
 

@@ -119,6 +119,8 @@ fn regress_a_polynomial_is_its_roots_in_whatever_order() {
     for same in ["[1, 2]", "[2, 1]"] {
         assert_eq!(beside(same, "real-roots"), Some(("holds".to_owned(), "accepted".to_owned())), "{same}");
     }
+    let none = beside("[2, 1], integrators = 0", "real-roots");
+    assert_eq!(none, Some(("holds".to_owned(), "accepted".to_owned())));
     for other in ["[2, 2]", "[1, 3]", "[2]"] {
         assert_eq!(beside(other, "real-roots"), None, "{other}");
         assert_eq!(beside(other, "desired-dynamics").unwrap().0, "not shown", "{other}");

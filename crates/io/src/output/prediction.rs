@@ -337,7 +337,8 @@ impl CourseFound {
             off => format!("; {}, where the torque can be another", start_of_estimates(off)),
         };
         let more = match (is_pushed(setup), setup.control.is_some()) {
-            (true, _) => "; without what pushes add to it",
+            (true, true) => "; without what pushes and samples add to it",
+            (true, false) => "; without what pushes add to it",
             (false, true) => "; without what samples add to it",
             (false, false) => "",
         };
@@ -375,9 +376,10 @@ impl CourseFound {
             return String::new();
         };
         let (agent, axis) = (names::agent_name(setup, peak.agent), names::torque_words(setup, peak.agent, peak.axis));
+        let unit = names::unit(setup, peak.agent, forwardstep_sim::Signal::Torque, peak.axis);
         let (needs, limit) = (three_places(peak.value.abs()), three_places(limit));
         format!(
-            "; limits keep it from that: {agent}, {axis} would need {needs} of {limit}, and the run is another then"
+            "; {agent}, {axis} needs {needs} {unit}, above its limit of {limit} {unit}; the run will differ from this"
         )
     }
 }
