@@ -13,6 +13,21 @@ from known import masses
 
 RING = "delay.constant_s = 0.1\nedges.ring = {}"
 
+# An s that only rounding makes, and so a V of 1e-35.
+ROUNDING = """format = 2
+time.end_s = 4
+[[agents]]
+name = "chain"
+count = 3
+robot.chain = { order = 2, psi = "x - 0.5" }
+start.position = [[1.0], [2.0], [0.1]]
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position"
+[law.linearising]
+[network]
+edges.ring = {}
+"""
 MEASURED = """
 const box = (part) => document.querySelector(part)?.getBoundingClientRect();
 const picture = document.querySelector("#graph-picture svg"), own = picture.getBoundingClientRect();
@@ -210,6 +225,73 @@ def units(browser, name, card, title, unit):
     expect(found.startswith(title) and found.endswith(f" {unit}"), f"{name}: {found} is not {title} in {unit}")
 
 
+READOUT = """
+const over = document.querySelector('[data-plot="disagreement"] .u-over'), box = over.querySelector(".readout").getBoundingClientRect();
+const card = over.closest(".card").getBoundingClientRect();
+return [over.querySelector(".readout").hidden, box.left - card.left, card.right - box.right, document.documentElement.scrollWidth - innerWidth];
+"""
+
+
+def readouts(browser, page, name):
+    """What a plot says under the cursor stays within its card, whatever is pointed at."""
+    for width, height in [(1024, 768), (390, 844)]:
+        browser.screen(width, height)
+        browser.open(page)
+        browser.run('document.documentElement.style.scrollBehavior = "auto"; document.querySelector(\'[data-plot="disagreement"]\').scrollIntoView({ block: "center" })')
+        drawn(browser)
+        left, top, wide, high = browser.run(
+            'const { left, top, width, height } = document.querySelector(\'[data-plot="disagreement"] .u-over\').getBoundingClientRect(); return [left, top, width, height]')
+        for share in [0.1, 0.45, 0.5, 0.55, 0.9]:
+            browser.point(left + share * wide, top + 0.5 * high)
+            drawn(browser)
+            hidden, before, after, beyond = browser.run(READOUT)
+            expect(not hidden and before >= 0 and after >= 0 and beyond <= 0, f"{name} at {width}, {share}: the values stand {before}, {after} px from the ends of the card")
+        browser.point(1, 1)
+    browser.screen(1400, 900)
+
+
+def titled(browser, name):
+    """Titles of pictures that are saved keep within them."""
+    found = waited(browser, """
+const out = document.getElementById("stage").drawings().map(({ svg }) => {
+  const picture = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
+  document.body.append(picture);
+  const beyond = Math.max(...[...picture.querySelectorAll("text")].map((text) => text.getBBox().x + text.getBBox().width)) - Number(picture.getAttribute("width"));
+  picture.remove();
+  return beyond;
+});
+return out;""")
+    expect(found and max(found) <= 0, f"{name}: words of {len(found)} pictures stand {found} px beyond them")
+
+
+def negligible(browser, name):
+    """A V of 1e-35 has an axis."""
+    ticks = browser.run('return [...document.querySelectorAll(".plot")].length')
+    expect(ticks > 0 and value(browser, 'document.getElementById("error-banner").textContent') == "", f"{name}: an error banner")
+
+
+def chosen(browser, name, vertices):
+    """Of very many edges those of a chosen agent are drawn."""
+    def edges():
+        drawn(browser)
+        return browser.run('return document.querySelectorAll("#graph-picture .edge").length')
+    before = edges()
+    browser.run('const s = document.getElementById("chosen"); s.value = "5"; s.dispatchEvent(new Event("change"))')
+    own, words = edges(), browser.run('return document.getElementById("stage").textContent')
+    expect(before == 2000 and own == 2 * (vertices - 1) and f"{own} of {vertices * (vertices - 1)} edges drawn" in words, f"{name}: {before} edges, of one {own}")
+    expect(browser.run('return document.querySelectorAll("#graph-picture .node.chosen").length') == 1, f"{name}: the chosen node is not marked")
+
+
+def predicted(browser, page, name):
+    """On a phone what was observed stands beside what was predicted."""
+    browser.screen(390, 844, touch=True)
+    browser.open(page)
+    drawn(browser)
+    right = browser.run('return Math.max(...[...document.querySelector("#predicted table").querySelectorAll("td:last-child")].map((cell) => cell.getBoundingClientRect().right))')
+    expect(right <= 390, f"{name}: what was observed ends at {right} px of 390")
+    browser.screen(1400, 900)
+
+
 def check(browser, folder):
     browser.screen(1400, 900)
     long = folder / "long-title.toml"
@@ -237,6 +319,18 @@ def check(browser, folder):
     small.write_text(small.read_text().replace("[-1.0, 1.0]", "[-1e-12, 1e-12]"))
     browser.open(folder.run("tiny", small))
     tiny(browser, "tiny")
+    page = folder.run("six-arms")
+    readouts(browser, page, "six-arms")
+    predicted(browser, page, "six-arms")
+    browser.open(page)
+    titled(browser, "six-arms")
+    rounding = folder / "rounding.toml"
+    rounding.write_text(ROUNDING)
+    browser.open(folder.run("rounding", rounding))
+    negligible(browser, "rounding")
+    sixty = masses(folder, "sixty", "delay.constant_s = 0.1\nedges.complete = {}", count=60)
+    browser.open(folder.run("sixty", sixty))
+    chosen(browser, "sixty", 60)
     browser.open(folder.run("theorem-7"))
     joints(browser, "theorem-7")
     browser.open(folder.run("gusts"))

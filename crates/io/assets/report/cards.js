@@ -270,8 +270,17 @@ const ganttCard = () => {
   const most = Math.max(1, ...bars.map((b) => b[3]));
   const rowHeight = rows.length > 40 ? 11 : 19;
   const names = [...(strip ? ["graph"] : []), ...rows.map((r) => r[0])];
-  const short = (name) => shortName(name, 22);
-  const width = Math.min(innerWidth < 640 ? 110 : 170, 16 + 6.4 * Math.max(4, ...names.map((n) => short(n).length)));
+  const mostWide = innerWidth < 640 ? 128 : 190;
+  // Of an edge both names and the arrow stay: the letters that there are room for are shared.
+  const short = (name) => {
+    const parts = name.split(" → ");
+    const fits = (letters) => parts.map((part) => shortName(part, letters)).join(" → ");
+    let letters = Math.max(...parts.map((part) => [...part].length));
+    while (letters > 3 && widthOf(fits(letters)) > mostWide - 16) letters -= 1;
+    return fits(letters);
+  };
+  const labels = names.map(short);
+  const width = Math.min(mostWide, 16 + Math.max(24, ...labels.map(widthOf)));
   const draw = (u) =>
     clipped(u, (ctx, scale) => {
       const x = (t) => u.valToPos(t, "x", true);
@@ -317,7 +326,7 @@ const ganttCard = () => {
       axis: {
         size: width,
         splits: () => names.map((_, k) => k + 0.5),
-        values: () => names.map(short),
+        values: () => labels,
         filter: (u, splits) => splits,
         space: 1,
         grid: { show: false },

@@ -43,7 +43,9 @@ const valuesOf = (run, k, log) => {
   return sampled.get(key);
 };
 const LINES = { run: { width: 1.8 }, predicted: { width: 1.2, dash: [6, 4] }, band: { width: 0.9, dash: [2, 3] } };
-const SUFFIX = { run: "", predicted: ", predicted", band: ", least or greatest" };
+const SUFFIX = { run: "", predicted: ", predicted" };
+// The least and the greatest of all agents come in this order.
+const ENDS = [", least", ", greatest"];
 
 const sideCards = quantityIds.flatMap((id) => {
   const all = having(id);
@@ -83,7 +85,11 @@ const fillCard = (mine) => {
   const units = [...new Set(found.map(({ entry: { unit } }) => unit))];
   // What has no unit stands beside what has one.
   mine.unit.textContent = units.join("") ? ` ${units.map((unit) => unit || "no unit").join(" beside ")}` : "";
-  mine.series = found.flatMap(({ run, entry: e }) => e.lines.map(({ series, style }) => ({ ...LINES[style], run, label: run.name + SUFFIX[style], colour: runColour(run), show: run.shown, values: valuesOf(run, series, mine.log) })));
+  mine.series = found.flatMap(({ run, entry: e }) => {
+    const bands = e.lines.filter(({ style }) => style === "band");
+    const suffix = (line) => SUFFIX[line.style] ?? ENDS[bands.indexOf(line)] ?? "";
+    return e.lines.map((line) => ({ ...LINES[line.style], run, label: run.name + suffix(line), unit: e.unit, colour: runColour(run), show: run.shown, values: valuesOf(run, line.series, mine.log) }));
+  });
   if (mine.series.every((s) => s.values.every((v) => v === null))) {
     mine.canvas.append(element("p", { className: "none", textContent: "no value can be drawn: all are zero or not finite" }));
     return;

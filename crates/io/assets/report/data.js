@@ -93,7 +93,12 @@ const number = (v, digits = 4) => {
 
 // A time of a run: as many places as tell its thousandths apart.
 const timePlaces = (end) => (end > 0 ? Math.max(0, Math.min(12, 4 - Math.ceil(Math.log10(end)))) : 0);
-const timeOf = (t, end) => `t = ${t.toFixed(timePlaces(end))} s of ${number(end, 6)} s`;
+// Never beyond the end, whatever is rounded.
+const timeAt = (t, end) => {
+  const places = timePlaces(end);
+  return `t = ${(t < end ? Math.min(t, Math.floor(end * 10 ** places) / 10 ** places) : end).toFixed(places)} s`;
+};
+const timeOf = (t, end) => `${timeAt(t, end)} of ${+end.toFixed(timePlaces(end))} s`;
 
 const unnamedWords = (count, all) => (count === all ? "no room for names: point at one" : `and ${count} more without room for ${count === 1 ? "its name" : "their names"}`);
 // What tells long names apart often stands at their end.

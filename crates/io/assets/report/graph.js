@@ -63,9 +63,12 @@ const knownOf = (() => {
   };
 })();
 
+// Of more edges than can be told apart only those of one that was chosen are drawn.
+const MOST_TOLD_APART = 300;
+const isOf = ({ from, to }, vertex) => from === vertex || to === vertex;
 // Of the edges in force those that are drawn. Messages on their way are left out that are not under way for `pace`, s.
-const heardAt = (time, pace = 0) => {
-  if (time > drawnUntil) return { graph: null, time, edges: [] };
+const heardAt = (time, pace = 0, chosen = null) => {
+  if (time > drawnUntil) return { graph: null, time, chosen, edges: [] };
   let [low, high] = [0, spans.length - 1];
   while (low < high) {
     const half = (low + high + 1) >> 1;
@@ -73,7 +76,9 @@ const heardAt = (time, pace = 0) => {
     else high = half - 1;
   }
   const graph = spans[low]?.[2] ?? 0;
-  const { drawn } = knownOf(graph);
+  const known = knownOf(graph);
+  const isAlone = chosen !== null && known.edges.length > MOST_TOLD_APART;
+  const drawn = isAlone ? known.edges.filter((edge) => isOf(edge, chosen)).slice(0, MOST_ARROWS) : known.drawn;
   const edges = drawn.map((edge) => {
     const ages = ageOf(edge.from, edge.to, edge.delay, time);
     return {
@@ -84,16 +89,16 @@ const heardAt = (time, pace = 0) => {
       flights: drawn.length > MOST_FLIGHTS ? [] : flightsOf(edge, time, pace),
     };
   });
-  return { graph, time, edges };
+  return { graph, time, chosen, edges };
 };
 
 const someNames = (list) => (list.length > 4 ? `${list.slice(0, 3).join(", ")} and ${list.length - 3} more` : list.join(", "));
 const ageWords = ([low, high]) => (low === high ? `${number(low, 3)} s` : `between ${number(low, 3)} and ${number(high, 3)} s`);
-const graphWords = ({ graph, time }) => {
+const graphWords = ({ graph, time, edges: drawn }) => {
   if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
   if (graph === null) return `Unknown: the graph changes very often, and is not drawn after ${number(drawnUntil)} s.`;
   const name = (v) => bodies[v].name;
-  const { edges, drawn, ages, silent, deaf } = knownOf(graph);
+  const { edges, ages, silent, deaf } = knownOf(graph);
   const count = scene.edge_counts[graph] ?? edges.length;
   // Nothing is said of all where not all are on the page.
   const named = (list) => (count === edges.length && list.length ? someNames(list.map(name)) : null);
@@ -168,7 +173,7 @@ const graphIn = (place) => {
   const r = vertices > MOST_NAMES ? 2.5 : vertices > 24 ? 4.5 : 7;
   picture.append(arrows, dots, nodes);
   place.append(picture);
-  let [places, shown, last] = [[], undefined, null];
+  let [places, shown, last] = [[], "", null];
   const along = (from, to) => {
     const [a, b] = [places[from], places[to]];
     const far = Math.hypot(b.x - a.x, b.y - a.y) || 1;
@@ -181,7 +186,7 @@ const graphIn = (place) => {
     const [width, height] = [place.clientWidth || GRAPH.width, place.clientHeight || GRAPH.height];
     picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
     places = graphLayout(width, height);
-    shown = undefined;
+    shown = "";
     nodes.replaceChildren(...bodies.map((body, v) => {
       const { x, y, text } = places[v];
       const group = svg("g", { class: `node a${v}` }, svg("title", {}, leading(body.name, body.leads)), svg("circle", { cx: x, cy: y, r }));
@@ -191,21 +196,22 @@ const graphIn = (place) => {
     }));
   };
   const draw = (heard) => {
-    const { graph, edges } = heard;
+    const { graph, edges, chosen } = heard;
     last = heard;
     // Ages change all the time, arrows only with the graph.
     picture.setAttribute("aria-label", `The graph: ${graphWords(heard)}`);
     picture.classList.toggle("unknown", graph === null);
-    if (shown !== graph) {
-      shown = graph;
+    if (shown !== `${graph} of ${chosen}`) {
+      shown = `${graph} of ${chosen}`;
+      [...nodes.children].forEach((node, v) => node.classList.toggle("chosen", v === chosen));
       // So many arrows would hide each other, and the nodes.
-      const faint = edges.length > 300 ? Math.max(0.08, 300 / edges.length) : 1;
+      const faint = edges.length > MOST_TOLD_APART ? Math.max(0.08, MOST_TOLD_APART / edges.length) : 1;
       for (const ink of ["stroke-opacity", "fill-opacity"]) arrows.setAttribute(ink, faint.toFixed(2));
       arrows.replaceChildren(...edges.map(({ from, to }) => {
         const { p, q, ux, uy, far } = along(from, to);
         const head = Math.min(7, 0.4 * far);
         const points = [[q.x, q.y], [q.x - head * ux - 0.4 * head * uy, q.y - head * uy + 0.4 * head * ux], [q.x - head * ux + 0.4 * head * uy, q.y - head * uy - 0.4 * head * ux]];
-        return svg("g", { class: `edge a${from}` }, svg("line", { x1: p.x, y1: p.y, x2: q.x - 0.7 * head * ux, y2: q.y - 0.7 * head * uy }), svg("polygon", { points: points.join(" ") }));
+        return svg("g", { class: `edge a${from}${chosen !== null && !isOf({ from, to }, chosen) ? " faded" : ""}` }, svg("line", { x1: p.x, y1: p.y, x2: q.x - 0.7 * head * ux, y2: q.y - 0.7 * head * uy }), svg("polygon", { points: points.join(" ") }));
       }));
     }
     const flying = edges.flatMap(({ from, to, flights }) => {

@@ -24,7 +24,7 @@ const fill = (card, height) => {
     if (index.gantt.by_receiver) document.getElementById("gantt-by").textContent = "per receiver; the stronger, the more agents it hears";
     mine.plot = drawPlot(canvas, ganttCard());
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", `${titleOf(card)}: ${index.gantt.rows.length} rows over ${number(whole[1])} s${notDrawn && `, ${notDrawn}`}; the table of graphs is above`);
+    canvas.setAttribute("aria-label", `${titleOf(card)}: ${index.gantt.rows.length} rows over ${number(whole[1])} s${notDrawn && `, ${notDrawn}`}; the picture of who hears whom says it for every time`);
     return;
   }
   if (kind === "plane") {

@@ -61,6 +61,13 @@ const decades = (min, max) => {
 // Distances of ticks for all sizes a single-precision number can have; the library's own end at 1e16.
 const increments = Array.from({ length: 80 }, (_, k) => [1, 2, 2.5, 5].map((m) => +`${m}e${k - 40}`)).flat();
 
+// Multiples of such a distance within a range. The library's own count by rounded decimals, and never end below 1e-16.
+const MOST_TICKS = 200;
+const multiples = (min, max, step) => {
+  const [first, last] = [Math.ceil(min / step - 1e-6), Math.floor(max / step + 1e-6)];
+  return Array.from({ length: Math.max(0, Math.min(MOST_TICKS, last - first + 1)) }, (_, k) => (first + k) * step);
+};
+
 // The smallest usual distance of ticks that leaves room for their labels.
 const stepOf = (perPixel, room) => increments.find((step) => step / perPixel >= room) ?? 1;
 
@@ -176,9 +183,10 @@ const readout = (log) => {
     );
     if (near.length > shown.length) box.append(element("div", { className: "more", textContent: `and ${near.length - shown.length} more` }));
     box.hidden = false;
-    const right = left > u.over.clientWidth / 2;
-    box.style.left = right ? "auto" : `${left + 14}px`;
-    box.style.right = right ? `${u.over.clientWidth - left + 14}px` : "auto";
+    // On the side that has room for it, and never beyond the plot.
+    const [wide, room] = [box.offsetWidth, u.over.clientWidth];
+    const beside = left + 14 + wide <= room ? left + 14 : left - 14 - wide;
+    box.style.left = `${Math.min(room - wide, Math.max(0, beside))}px`;
     box.style.top = "6px";
   };
   return { hooks: { init: [(u) => u.over.append(box)], setCursor: [update] } };
@@ -276,7 +284,8 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         space: 34,
         incrs: increments,
         values: (u, splits, a, s, step) => splits.map((v) => (log ? power(Math.round(Math.log10(v))) : tick(v, step))),
-        ...(log ? { splits: (u, a, min, max) => decades(min, max), filter: (u, splits) => splits } : {}),
+        splits: (u, a, min, max, step) => (log ? decades(min, max) : multiples(min, max, step)),
+        ...(log ? { filter: (u, splits) => splits } : {}),
         ...y.axis,
       },
     ],
@@ -292,6 +301,7 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
         points: { show: times.length < 2 },
         _colour: s.colour,
         _first: s.first,
+        unit: s.unit,
       })),
     ],
     hooks: {

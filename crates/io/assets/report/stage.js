@@ -47,7 +47,7 @@ const stage = (() => {
     const frame = frameAt(t, hidden);
     pen.fillStyle = colour("--surface");
     pen.fillRect(0, 0, width, height);
-    const unnamed = paint(pen, looking(width, height, frame.nodes), frame, heardAt(t), true);
+    const unnamed = paint(pen, looking(width, height, frame.nodes), frame, heardAt(t, 0, now.alone), true);
     // What the page says beside the picture, from the last line upwards.
     Object.assign(pen, { font: WORDS, fillStyle: colours.muted });
     const lines = [];
@@ -97,7 +97,7 @@ const stage = (() => {
     const see = looking(width, height, frame.nodes);
     see.kept = [[width - corner.wide, height - corner.high, width, height]];
     // What passes in less than six frames only flickers.
-    const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0);
+    const heard = heardAt(now.t, now.playing ? 0.1 * Number(rate.value) : 0, now.alone);
     const unnamed = paint(ctx, see, frame, heard, now.flat);
     seen = { see, frame };
     if (!now.flat) lit();
@@ -112,7 +112,7 @@ const stage = (() => {
     const words = nameless > 0 && vertices > 1 ? ` ${nameless === vertices ? "Names have no room" : `${nameless} names have no room`}: point at a node.` : "";
     sayHeard(`${graphWords(heard)}${words}`);
     const graphs = scene.graphs.length;
-    part("graph-when").textContent = `${heard.graph === null ? "unknown " : graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at t = ${number(now.t, 3)} s`;
+    part("graph-when").textContent = `${heard.graph === null ? "unknown " : graphs > 1 ? `graph ${heard.graph + 1} of ${graphs}, ` : ""}at ${timeAt(now.t, end)}`;
     for (const plot of plots) plot.clock?.(now.t);
     watchers.forEach((watch) => watch(now.t));
   };

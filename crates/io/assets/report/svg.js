@@ -147,27 +147,42 @@ const drawGrid = (plot, paper, pen) => {
   Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
 };
 
+// A title in lines that fit; a word that is longer than one stays whole.
+const titleLines = (pen, title, width) => {
+  pen.font = TITLE_FONT;
+  const lines = [""];
+  for (const word of title.split(" ")) {
+    const longer = lines.at(-1) ? `${lines.at(-1)} ${word}` : word;
+    if (lines.at(-1) && pen.measureText(longer).width > width) lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return lines;
+};
+
 const CURVE = ' class="curve"';
 const MOST_NAMED = 40;
-const HEAD = 30;
-// What `draw` draws between the title and the names of all curves, which begin `under` the top, with a pen for a paper of the size that takes.
-const pageWith = (penOf, width, under, title, all, draw) => {
+const [HEAD, TITLE_LINE, TITLE_FONT] = [30, 17, `600 13px ${FONT}`];
+// What `draw` draws, `high`, between the title and the names of all curves, with a pen for a paper of the size that takes.
+const pageWith = (penOf, width, high, title, all, draw) => {
+  const lines = titleLines(measuring(), title, width - 28);
+  const head = HEAD + TITLE_LINE * (lines.length - 1);
+  const under = head + high + 18;
   const named = all.slice(0, MOST_NAMED);
   if (all.length > named.length) named.push({ label: `and ${all.length - named.length} more`, colour: "none" });
   const height = namesBelow(svgPen(0, 0, measuring()), named, width, under) + 12;
   const pen = penOf(width, height);
   pen.fillStyle = colour("--surface");
   pen.fillRect(0, 0, width, height);
-  Object.assign(pen, { font: `600 13px ${FONT}`, fillStyle: colour("--ink") });
-  pen.fillText(title, 14, 20);
-  draw(pen);
+  Object.assign(pen, { font: TITLE_FONT, fillStyle: colour("--ink") });
+  lines.forEach((line, k) => pen.fillText(line, 14, 20 + TITLE_LINE * k));
+  draw(pen, head);
   Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
   namesBelow(pen, named, width, under);
   return pen;
 };
 
 // A plot as it stands: the range, the curves and the lines that it shows, with its title above and its legend below.
-const plotPage = (penOf, plot, title) => pageWith(penOf, plot.width, HEAD + plot.height + 18, title, namesOf(plot), (pen) => drawAgain(plot, pen, HEAD));
+const plotPage = (penOf, plot, title) => pageWith(penOf, plot.width, plot.height, title, namesOf(plot), (pen, head) => drawAgain(plot, pen, head));
 const svgOf = (plot, title) => plotPage((width, height) => svgPen(width, height, measuring()), plot, title).document(title);
 // The same in pixels, so many of them that a page can be printed with it.
 const PIXELS = 3;

@@ -146,10 +146,10 @@ fn space(comparison: &Comparison) -> Markup {
                 input #slider type="range" min="0" max="1000" value="0" step="any" aria-label="Simulated time" aria-describedby="view-help";
                 output #time for="slider" { "t = 0 s" }
                 label { "rate " (rates()) }
-                p.note #view-help {
+                details { summary { "Keys and gestures" } p.note #view-help {
                     "Space plays and pauses; ← and → move in time; Home and End go to the start and the end. Drag or W, A, S, D turn all pictures, + and − \
                      zoom. Plots follow the same clock."
-                }
+                } }
                 noscript { p.note { "The pictures need JavaScript." } }
             }
         }
