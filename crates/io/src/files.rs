@@ -56,7 +56,7 @@ pub enum Special {
     Socket,
     /// A device.
     Device,
-    /// Something that gives bytes when it has some.
+    /// A stream that blocks until data arrives.
     Waits,
     /// Something that this system does not tell.
     Other,
@@ -127,10 +127,14 @@ pub(crate) fn open_file(path: &Path) -> Result<File, ReadError> {
     if !kind.is_file() {
         return Err(ReadError::NotAFile(Special::of(kind)));
     }
-    Ok(without_waiting(OpenOptions::new().read(true)).open(path)?)
+    match without_waiting(OpenOptions::new().read(true)).open(path) {
+        // Somebody holds a lease on it, and gives it up in time.
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Ok(File::open(path)?),
+        opened => Ok(opened?),
+    }
 }
 
-/// What says that it is a file may wait for bytes all the same, as the log of the kernel does, and a pipe may take its place meanwhile.
+/// What says that it is a file may wait for data all the same, as the log of the kernel does.
 #[cfg(unix)]
 fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use std::os::unix::fs::OpenOptionsExt;

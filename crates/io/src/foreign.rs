@@ -67,8 +67,10 @@ const SECRETS: [&str; 10] = [
     "PRIVATE_KEY",
     "CREDENTIAL",
 ];
-/// Words that names of secrets end in.
+/// Words that the names of secret variables end in; in small letters they may be words of a scenario.
 const LAST_WORDS: [&str; 4] = ["PASS", "PWD", "PSK", "PIN"];
+/// No token is shorter.
+const TOKEN: usize = 16;
 /// How tokens begin, whatever they are called.
 const TOKENS: [&str; 10] =
     ["ghp_", "gho_", "ghs_", "github_pat_", "glpat-", "sk_live_", "sk_test_", "xoxb-", "xoxp-", "AKIA"];
@@ -106,8 +108,11 @@ pub(crate) fn foreign_text(text: &str) -> Option<Foreign> {
 /// A line such as `PATH=/bin`. Keys of a scenario have small letters.
 fn is_variable(line: &str) -> bool {
     let line = line.strip_prefix("export ").unwrap_or(line);
-    let Some((name, _)) = line.split_once('=') else { return false };
-    name.starts_with(|first: char| first.is_ascii_uppercase())
+    let Some((name, value)) = line.split_once('=') else { return false };
+    // Numbers and texts in quotes may be meant for a scenario.
+    let is_bare = value.starts_with(|first: char| !first.is_ascii_digit() && !"\"'+-[{ ".contains(first));
+    is_bare
+        && name.starts_with(|first: char| first.is_ascii_uppercase())
         && name.bytes().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_')
 }
 
@@ -153,12 +158,16 @@ fn is_secret(line: &str) -> bool {
     let line = line.trim_start();
     let line = line.strip_prefix("export ").unwrap_or(line);
     let Some((name, value)) = line.split_once(['=', ':']) else { return false };
-    let name = name.trim().trim_matches(['"', '\'']).to_ascii_uppercase();
+    let written = name.trim().trim_matches(['"', '\'']);
+    let name = written.to_ascii_uppercase();
     let plain = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
     let value = value.trim().trim_matches(['"', '\'']);
     let last = name.rsplit('_').next().unwrap_or_default();
-    let is_named = SECRETS.iter().any(|secret| name.contains(secret)) || LAST_WORDS.contains(&last);
-    let is_token = TOKENS.iter().any(|begins| value.starts_with(begins));
+    let is_variable = written == name && LAST_WORDS.contains(&last);
+    let is_named = SECRETS.iter().any(|secret| name.contains(secret)) || is_variable || written == "psk";
+    let is_word =
+        value.len() >= TOKEN && value.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-".contains(&byte));
+    let is_token = is_word && TOKENS.iter().any(|begins| value.starts_with(begins));
     plain && !value.is_empty() && (is_named || is_token || has_login(value))
 }
 
@@ -195,8 +204,9 @@ mod tests {
             ("DB_PASS=hunter2\n", Foreign::Secrets),
             ("apikey: abc\n", Foreign::Secrets),
             ("network={\n\tpsk=\"hunter2\"\n}\n", Foreign::Secrets),
-            ("pin = 1234\n", Foreign::Secrets),
-            ("GH=ghp_abc\n", Foreign::Secrets),
+            ("CARD_PIN=1234\n", Foreign::Secrets),
+            ("GH=ghp_0123456789abcdef\n", Foreign::Secrets),
+            ("key = \"sk_live_0123456789abcdef\"\n", Foreign::Secrets),
             ("url = \"postgres://me:hunter2@example.org/db\"\n", Foreign::Secrets),
             ("HOME=/root\nPATH=/bin\n", Foreign::Variables),
             ("export LANG=C\n", Foreign::Variables),
@@ -226,6 +236,12 @@ mod tests {
             "machine = 1",
             "title = \"see https://example.org/a@b:c\"",
             "spin = 1",
+            "lock_pin = 0.02",
+            "low_pass = 20",
+            "pin: 4",
+            "name = \"gho_m\"",
+            "title = \"AKIA rover at home\"",
+            "FORMAT=2",
             "Mass = 1",
             "a:1:b",
         ] {

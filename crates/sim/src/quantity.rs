@@ -236,9 +236,12 @@ impl fmt::Display for QuantityError {
             }
             Requirement::Few { what, count, most } => {
                 // Two digits must not say that it is not too many.
-                let count = Some(about(count)).filter(|count| count.0 > most).unwrap_or(Number(count));
+                let [word, count] = match about(count) {
+                    Number(rounded) if rounded > most => ["about".to_owned(), number(rounded).to_string()],
+                    Number(_) => ["more than".to_owned(), number(most).to_string()],
+                };
                 let most = number(most);
-                write!(f, "about {count} {what} until the end of the run, but at most {most} are accepted")
+                write!(f, "{word} {count} {what} until the end of the run, but at most {most} are accepted")
             }
         }
     }

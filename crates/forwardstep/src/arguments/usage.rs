@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use forwardstep_io::for_shell;
-use forwardstep_io::scenario::{beyond, shipped_scenario};
+use forwardstep_io::scenario::{nearest_here, shipped_scenario};
 use forwardstep_io::shown;
 
 /// The same mistake, with what to type instead where that can be told.
@@ -14,11 +14,13 @@ pub(crate) fn with_tips(mut error: clap::Error) -> clap::Error {
             Some(ContextValue::String(word)) => runs(word),
             _ => None,
         },
-        // That it could be the value of another argument is no help where there is none, or for what that would refuse.
-        ErrorKind::UnknownArgument => match error.get(ContextKind::InvalidArg) {
-            Some(ContextValue::String(word)) => wished(word),
-            _ => None,
-        },
+        // Options that are spelt alike are the better tip.
+        ErrorKind::UnknownArgument if error.get(ContextKind::SuggestedArg).is_none() => {
+            match error.get(ContextKind::InvalidArg) {
+                Some(ContextValue::String(word)) => tip_for_unknown(word),
+                _ => None,
+            }
+        }
         ErrorKind::InvalidUtf8 => Some(
             "names of files are given in Unicode; go into the folder (`cd`) whose name is none, or rename the file"
                 .to_owned(),
@@ -31,13 +33,12 @@ pub(crate) fn with_tips(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// What is so here instead of an option that there is not.
-fn wished(word: &str) -> Option<String> {
-    let plain = word.trim_start_matches('-');
-    if plain.starts_with(|first: char| first.is_ascii_digit()) {
-        return Some("no number here is negative".to_owned());
+/// The tip for an option that does not exist.
+fn tip_for_unknown(word: &str) -> Option<String> {
+    match word.strip_prefix("--") {
+        Some(name) => nearest_here(name),
+        None => word.parse::<f64>().ok().map(|_| "no number here is negative".to_owned()),
     }
-    beyond(plain)
 }
 
 /// What to type for a scenario without a command.
@@ -61,8 +62,8 @@ mod tests {
             ("--floating-base", "`robot.vehicle`"),
             ("-1", "negative"),
         ] {
-            assert!(wished(word).is_some_and(|tip| tip.contains(part)), "{word}: {:?}", wished(word));
+            assert!(tip_for_unknown(word).is_some_and(|tip| tip.contains(part)), "{word}: {:?}", tip_for_unknown(word));
         }
-        assert_eq!(wished("--agnets"), None);
+        assert_eq!(tip_for_unknown("--agnets"), None);
     }
 }

@@ -15,7 +15,7 @@ const LISTED: usize = 20;
 
 /// Draws scenarios and tries to refute what is claimed of them.
 pub(crate) fn falsify(options: &FalsifyOptions, console: &mut Console) -> Result<Status, Status> {
-    replace::may_be_folder(&options.out).map_err(|refused| complain(&refused))?;
+    replace::check_folder(&options.out).map_err(|refused| complain(&refused))?;
     let stop = Stop::listen();
     let started = Instant::now();
     let limit =

@@ -17,7 +17,7 @@ use crate::status::Status;
 
 /// Reading and drawing take this share of the time at most, one in so many.
 const SHARE: u32 = 4;
-/// A run claims its folder sooner than that after it has made it.
+/// A run locks its folder within this time of creating it.
 const FIRST: Duration = Duration::from_secs(2);
 /// Where the system cannot tell whether a run writes, one whose journal has not grown for so long has ended.
 const PATIENCE: Duration = Duration::from_secs(60);

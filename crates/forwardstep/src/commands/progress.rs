@@ -11,7 +11,7 @@ use crate::console::remark;
 const PARTS: u64 = 1000;
 /// The bar is redrawn no more often.
 const REDRAW: Duration = Duration::from_millis(100);
-/// A log, which nobody need watch, is told nothing of what takes no longer.
+/// Shorter work is not logged.
 const FIRST_LINE: Duration = Duration::from_secs(30);
 
 /// A bar on standard error; a line now and then when that is not a terminal.
@@ -20,6 +20,9 @@ pub(crate) struct Bar {
     /// What is simulated, where that is not the run itself.
     what: Option<Cow<'static, str>>,
     started: Instant,
+    /// When that began which is simulated now, and how far it was last.
+    began: Instant,
+    t_s: f64,
     drawn: Instant,
     /// When the next line is due, after the start.
     next_line: Duration,
@@ -41,11 +44,16 @@ impl Bar {
             bar.set_style(style);
         }
         let started = Instant::now();
-        Bar { bar, what, started, drawn: started, next_line: FIRST_LINE }
+        Bar { bar, what, started, began: started, t_s: 0.0, drawn: started, next_line: FIRST_LINE }
     }
 
     pub(crate) fn update(&mut self, progress: Progress) {
         let now = Instant::now();
+        // A prediction simulates its dynamics several times.
+        if progress.t_s < self.t_s {
+            self.began = now;
+        }
+        self.t_s = progress.t_s;
         if self.bar.is_hidden() {
             self.line_at(now, progress).into_iter().for_each(remark);
         } else if now - self.drawn >= REDRAW {
@@ -55,7 +63,7 @@ impl Bar {
         }
     }
 
-    /// What a log is told, each time after twice as long.
+    /// What a log is told, at intervals that double.
     fn line_at(&mut self, now: Instant, progress: Progress) -> Option<String> {
         let taken = now - self.started;
         if taken < self.next_line {
@@ -66,10 +74,22 @@ impl Bar {
     }
 
     fn words(&self, now: Instant, Progress { t_s, end_s }: Progress) -> String {
-        let wall_s = (now - self.started).as_secs_f64();
+        let wall_s = (now - self.began).as_secs_f64();
         let left_s = if t_s > 0.0 { (end_s - t_s) / t_s * wall_s } else { f64::INFINITY };
         let what = self.what.as_ref().map_or_else(String::new, |what| format!("{what}: "));
         format!("{what}{t_s:.1} of {end_s} s, {} × real time, {} left", speed(t_s / wall_s), duration(left_s))
+    }
+
+    /// The bar of what is simulated next, as a part of the same work.
+    pub(crate) fn next(self, what: impl Into<Cow<'static, str>>) -> Self {
+        let (started, next_line) = (self.started, self.next_line);
+        self.hide();
+        Bar { started, next_line, ..Bar::named(what) }
+    }
+
+    /// Makes room for a line beside it.
+    pub(crate) fn hide(&self) {
+        self.bar.finish_and_clear();
     }
 
     /// Makes room for what follows.
@@ -115,5 +135,8 @@ mod tests {
         assert_eq!(line(79, 20.0), None);
         assert!(line(80, 20.0).unwrap().starts_with("After 1 min 20 s: "));
         assert_eq!(line(159, 20.0), None);
+        // Its parts are one work.
+        let bar = Bar { next_line: Duration::from_secs(160), ..bar }.next("what follows");
+        assert_eq!(bar.next_line, Duration::from_secs(160));
     }
 }

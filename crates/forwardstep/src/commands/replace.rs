@@ -34,8 +34,8 @@ pub(super) fn write_into(folder: &Path, name: &str, text: &str) -> Result<PathBu
     Ok(path)
 }
 
-/// Checks that this is a folder, or that one can be made there. Asked before work that may have nothing to write.
-pub(super) fn may_be_folder(path: &Path) -> Result<(), Plain<String>> {
+/// Checks that no file stands in the way of this folder. Asked before work that may have nothing to write.
+pub(super) fn check_folder(path: &Path) -> Result<(), Plain<String>> {
     let there = path.ancestors().find(|above| above.symlink_metadata().is_ok());
     match there.filter(|there| !there.is_dir()) {
         Some(there) => {

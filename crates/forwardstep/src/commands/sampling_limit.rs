@@ -42,20 +42,25 @@ pub(crate) fn sampling_limit(
         let deployments = deployments(options, &scenario);
         for deployment in &deployments {
             let accepted = Accepted { peak_error: options.peak_error, remains: options.disagreement };
-            let mut bar = None;
+            let (mut bar, mut of_s) = (Some(Bar::new()), f64::NAN);
             let mut watch = |seen: Measuring| match seen {
                 Measuring::Runs { period_s, progress } => {
-                    let named = || Bar::named(format!("{}, {} ms", scenario.name, to_digits(1e3 * period_s, 4)));
-                    bar.get_or_insert_with(named).update(progress);
+                    if period_s != of_s {
+                        let what = format!("{}, {} ms", scenario.name, to_digits(1e3 * period_s, 4));
+                        (bar, of_s) = (bar.take().map(|bar| bar.next(what)), period_s);
+                    }
+                    bar.iter_mut().for_each(|bar| bar.update(progress));
                 }
                 Measuring::Ran(trial) => {
-                    bar.take().into_iter().for_each(Bar::clear);
                     if !options.table {
+                        bar.iter().for_each(Bar::hide);
                         console.line(tried(trial));
                     }
                 }
             };
-            let found = match SamplingLimit::measure(&scenario.setup, *deployment, accepted, &mut watch) {
+            let measured = SamplingLimit::measure(&scenario.setup, *deployment, accepted, &mut watch);
+            bar.into_iter().for_each(Bar::clear);
+            let found = match measured {
                 Ok(found) => found,
                 // Of all ways to sample those that the laws have no use for, which measure no velocity.
                 Err(SetupError::VelocityUnused { .. }) if deployments.len() > 1 => continue,

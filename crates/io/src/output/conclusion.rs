@@ -212,7 +212,10 @@ fn left_in_quarter(quarters: u32, t_s: &[f64], overall: &[f64]) -> Option<(f64, 
 
 /// Whether a gap that falls does so more slowly than it did: what is left of it after a time is no measure for what a longer time leaves then.
 fn is_slowing(t_s: &[f64], overall: &[f64]) -> bool {
-    let rate = |quarters| left_in_quarter(quarters, t_s, overall).map(|(left, _)| -left.ln());
+    // Largest values of a wave beat with the quarters.
+    let rate = |quarters| {
+        left_in_quarter(quarters, t_s, overall).filter(|(_, steadily)| *steadily).map(|(left, _)| -left.ln())
+    };
     rate(1).zip(rate(0)).is_some_and(|(before, now)| before > SLOWS * now)
 }
 
@@ -227,8 +230,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, boo
         // A quarter more than it takes at this rate, which need not stay.
         let end_s = nice(last_t_s + 1.25 * more_s);
         if stopped && end_s <= record.setup.time.end_s {
-            let after = if slows { ", though it comes closer more and more slowly" } else { "" };
-            advice.push(format!("let it run to its end: at this rate that is enough{after}"));
+            advice.push("let it run to its end: at this rate that is enough".into());
         } else if more_s.is_finite() && more_s <= LONGEST * last_t_s {
             advice.push(if slows {
                 format!("run longer: it comes closer more and more slowly, so `time.end_s = {end_s}` at least")
@@ -387,10 +389,11 @@ mod tests {
         assert!(!slows(&|t_s| (-0.1 * t_s).exp()) && !slows(&slow), "one mode");
         assert!(slows(&|t_s| (-0.2 * t_s).exp() + slow(t_s)), "a slower one takes over");
         assert!(!slows(&|t_s| (-0.4 * t_s).exp() + 20.0 * slow(t_s)), "it has taken over");
-        // The same under a wave, of which only the largest values count.
-        let waves = |t_s: f64| (5.0 * t_s).cos().abs();
-        assert!(!slows(&|t_s| waves(t_s) * (-0.1 * t_s).exp()));
-        assert!(slows(&|t_s| waves(t_s) * ((-0.2 * t_s).exp() + slow(t_s))));
+        // Of waves nothing is told, whose quarters differ by where they are cut.
+        for turns in 1..40 {
+            let wave = |t_s: f64| (0.1 * f64::from(turns) * t_s + 0.3).cos().abs() * (-0.1 * t_s).exp();
+            assert!(!slows(&wave), "{turns}");
+        }
         assert!(!slows(&|_| 1.0) && !slows(&|_| 0.0) && !slows(&|t_s| t_s));
     }
 

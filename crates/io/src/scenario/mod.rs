@@ -104,7 +104,7 @@ pub use open::{OpenError, open_scenario, open_text};
 pub use problem::ScenarioProblem;
 pub use push_problem::PushProblem;
 pub use rewired::{Rewired, StatedNetwork, rewired, stated_network};
-pub use scope::beyond;
+pub use scope::nearest_here;
 pub use shipped::{SHIPPED_SCENARIOS, SHIPPED_TABLES, ShippedScenario, ShippedTable, shipped_scenario};
 pub use system_problem::SystemProblem;
 pub use table::TableProblem;

@@ -16,7 +16,7 @@ use super::fault::Fault;
 use super::kinds::Kinds;
 use super::network_problem::NetworkProblem;
 use super::problem::ScenarioProblem;
-use super::scope::beyond;
+use super::scope::nearest_here;
 use super::value_problem::ValueProblem;
 use crate::SourceText;
 use crate::wording::nearest;
@@ -135,7 +135,7 @@ impl Gaps {
             ScenarioProblem::Value(ValueProblem::MissingKey { key }) => {
                 let is_whole = fault.span.is_none();
                 // What a whole file lacks is not told beside a wish for what is not modelled.
-                self.cut.iter().any(|cut| nearest(cut, [*key]).is_some() || is_whole && beyond(cut).is_some())
+                self.cut.iter().any(|cut| nearest(cut, [*key]).is_some() || is_whole && nearest_here(cut).is_some())
             }
             ScenarioProblem::Value(ValueProblem::NoChoice { .. } | ValueProblem::Empty { .. }) => true,
             // What does not go together may have been meant otherwise.

@@ -141,7 +141,7 @@ const WISHES: &[(&[&str], &str)] = &[
 ];
 
 /// That a key, a choice or a name asks for something that has another name here, as `quadrotor`, or is not modelled, and what is nearest to it.
-pub fn beyond(word: &str) -> Option<String> {
+pub fn nearest_here(word: &str) -> Option<String> {
     let word = word.to_ascii_lowercase();
     if word.split(SEPARATORS).any(|part| part == "gravity") {
         return Some("gravity is said of each robot: `robot.urdf.gravity_m_s2 = [0, 0, -9.81]`, `robot.planar_arm.gravity_m_s2 = 9.81`".into());
@@ -184,7 +184,7 @@ mod tests {
             ("Contact", "[[external_wrenches]]"),
             ("camera-rate", "`[control]`"),
         ] {
-            let said = beyond(word).unwrap_or_default();
+            let said = nearest_here(word).unwrap_or_default();
             assert!(said.contains("not modelled (see Limits") && said.contains(part), "{word}: {said}");
         }
         for (word, part) in [
@@ -196,7 +196,7 @@ mod tests {
             ("backstepping", "`reference.backstepping`"),
             ("real_time", "Sampled"),
         ] {
-            let said = beyond(word).unwrap_or_default();
+            let said = nearest_here(word).unwrap_or_default();
             assert!(!said.contains("not modelled") && said.contains(part), "{word}: {said}");
         }
         for word in [
@@ -211,11 +211,13 @@ mod tests {
             "rl",
             "flocking",
         ] {
-            assert!(beyond(word).is_some_and(|said| said.contains(". Nearest: ")), "{word}");
+            assert!(nearest_here(word).is_some_and(|said| said.contains(". Nearest: ")), "{word}");
         }
-        assert!(beyond("gravity_direction").is_some_and(|said| said.starts_with("gravity is said of each robot")));
+        assert!(
+            nearest_here("gravity_direction").is_some_and(|said| said.starts_with("gravity is said of each robot"))
+        );
         for word in ["", "grounds", "databases", "cameraman", "basement", "weight"] {
-            assert_eq!(beyond(word), None, "{word}");
+            assert_eq!(nearest_here(word), None, "{word}");
         }
     }
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::formula_problem::FormulaProblem;
 use super::refusal::advice_on_quantity;
-use super::scope::{beyond, is_one};
+use super::scope::{is_one, nearest_here};
 use crate::wording::{are, choose, count, entry_count, is_slip, nearest, number};
 
 /// Why a value has no meaning.
@@ -280,7 +280,7 @@ fn within_scope(word: &str, kind: &str, allowed: &[&'static str]) -> String {
     // A word that is a wish as it stands is nearer to that than to a key that resembles it.
     let candidates = || allowed.iter().copied();
     let slips = if is_one(word) { is_slip(word, candidates()) } else { nearest(word, candidates()).is_some() };
-    match beyond(word).filter(|_| !slips) {
+    match nearest_here(word).filter(|_| !slips) {
         Some(beyond) => format!("{beyond}; {}", choose("", kind, allowed)),
         None => choose(word, kind, allowed),
     }

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use forwardstep::io::robot::{OpenRobotError, open_robot};
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::scenario::{
-    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, beyond, shipped_scenario,
+    OpenError, RobotTemplate, Scenario, TaskTemplate, Template, TemplateDelay, TemplateGraph, nearest_here,
+    shipped_scenario,
 };
 use forwardstep::io::urdf::{FrictionPolicy, NoticeKind, SHIPPED_ROBOTS, shipped_robot};
 use forwardstep::io::{SourceText, UrdfOptions};
@@ -276,7 +277,7 @@ fn robot(name_or_path: &str, scenario: Option<&Path>, kinds: &Kinds) -> Result<R
         OpenRobotError::Unknown { name } => {
             let kinds = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some());
             let all: Vec<&str> = kinds.chain(SHIPPED_ROBOTS.map(|(name, _)| name)).collect();
-            let known = match beyond(&name) {
+            let known = match nearest_here(&name) {
                 Some(here) => format!("{here}; {}", choose("", "robots are", &all)),
                 None => choose(&name.replace('-', "_"), "robots are", &all),
             };
