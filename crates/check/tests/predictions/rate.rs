@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use forwardstep_check::prediction::{NoCascade, NoPeriodRate, NoRate, Settled, Unfinished, period_rate, rate};
+use forwardstep_check::prediction::{
+    NoCascade, NoPeriodRate, NoRate, Settled, Unfinished, period_rate, period_rate_within, rate,
+};
 use forwardstep_check::{NoIdeal, NotFixed, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
@@ -195,7 +197,20 @@ fn regress_a_rate_is_seen_over_the_time_that_it_takes_however_short_a_period_is(
         let found = period_rate(&setup, &mut go_on).unwrap();
         assert!((found.rate_per_s / wanted - 1.0).abs() < 0.02, "{found:?}, not {wanted}");
         assert!((found.factor - (found.rate_per_s * found.period_s).exp()).abs() < 1e-12 && found.periods > 1000);
+        assert!(found.wavers < 1e-3, "of single periods: {found:?}");
     }
+}
+
+/// Where the work does not suffice for the attempt that would be sure, what an earlier one saw is taken, if it is clear enough.
+#[test]
+fn regress_a_rate_that_was_seen_is_not_lost_with_the_next_attempt() {
+    let mut setup = in_turns(Exchange::Position, 1.0, 0.002, 50.0);
+    setup.time.end_s = 10.0;
+    let whole = period_rate(&setup, &mut go_on).unwrap();
+    let of = |work: f64| period_rate_within(&setup, work, &mut go_on).ok();
+    let found: Vec<_> = (20..34).filter_map(|power| of(2.0_f64.powi(power))).collect();
+    assert!(found.iter().all(|found| (found.rate_per_s / whole.rate_per_s - 1.0).abs() < 0.02), "{found:?}");
+    assert!(found.iter().any(|found| found.periods < whole.periods) && found.contains(&whole), "{found:?} {whole:?}");
 }
 
 /// Who hears does q̈_i = −κ q̇_i − w (q̇_i + κ q_i − κ q_j), the other q̈_j = −κ q̇_j: exponentials of matrices have the operator of a period. Its

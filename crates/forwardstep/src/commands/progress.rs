@@ -135,6 +135,14 @@ mod tests {
         assert_eq!(line(79, 20.0), None);
         assert!(line(80, 20.0).unwrap().starts_with("After 1 min 20 s: "));
         assert_eq!(line(159, 20.0), None);
+        // What begins anew has its own pace.
+        let mut again = Bar::new();
+        again.update(Progress { t_s: 5.0, end_s: 10.0 });
+        let began = again.began;
+        again.update(Progress { t_s: 6.0, end_s: 10.0 });
+        assert_eq!(again.began, began);
+        again.update(Progress { t_s: 1.0, end_s: 20.0 });
+        assert!(again.began > began);
         // Its parts are one work.
         let bar = Bar { next_line: Duration::from_secs(160), ..bar }.next("what follows");
         assert_eq!(bar.next_line, Duration::from_secs(160));

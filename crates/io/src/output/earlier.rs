@@ -96,9 +96,10 @@ impl Left {
 
     /// Whether a run wrote the folder. What stands in the place of a summary and is none is somebody else's.
     fn is_of_a_run(&self, folder: &Path) -> bool {
-        let is_sealed = folder.join(SEAL).symlink_metadata().is_ok();
-        let has_seal = is_sealed && read_text(&folder.join(SEAL)).is_ok_and(|text| is_summary(&text));
-        has_seal || !is_sealed && !(self.summaries.is_empty() && self.journal.is_empty())
+        match folder.join(SEAL).symlink_metadata() {
+            Ok(_) => read_text(&folder.join(SEAL)).is_ok_and(|text| is_summary(&text)),
+            Err(_) => !(self.summaries.is_empty() && self.journal.is_empty()),
+        }
     }
 
     /// The names of all files that a run writes, and of the copies of inputs that are known here.
@@ -119,7 +120,8 @@ impl Left {
         let Ok(about) = path.symlink_metadata() else { return Ok(()) };
         let was_whole = !self.summaries.is_empty();
         let has_form = match name {
-            SEAL | PAGE => true,
+            PAGE => true,
+            SEAL => read_text(&path).is_ok_and(|text| is_summary(&text)),
             MANIFEST => self.summaries.iter().any(|summary| summary.has_list(&path)),
             SHAPES => was_whole && read_text(&path).is_ok_and(|text| serde_json::from_str::<Shapes>(&text).is_ok()),
             JOURNAL => !about.is_file() || journal::is_one(&path),
