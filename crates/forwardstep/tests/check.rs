@@ -495,3 +495,21 @@ fn what_changed_v_is_said_when_asked_and_adds_up() {
     let told = stderr(&forwardstep(&with(&continuous), &["run", "two.toml", "--balance", "--out", "run"]));
     assert!(told.contains("--balance says nothing here"), "{told}");
 }
+
+/// Estimates that start close to the truth delay a run as well, where K and Γ are small: nothing was said of that.
+#[test]
+fn regress_estimates_that_start_near_the_truth_are_named_beside_a_settling_time() {
+    let folder = folder();
+    let text = "format = 2\ntime.end_s = 60\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 2 }\n\
+                start.position_m = [[0.0], [1.0]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n\
+                [law.adaptive]\ndamping.gain = 2\nadaptation_gain = 1\nestimate_start.scaled = SCALED\n[network]\nedges.ring = {}\n";
+    for (scaled, part) in [
+        ("0.95", "(but estimates start within 5 % of the truth"),
+        ("0.5", "(but estimates start far from the truth"),
+        ("1.0", "settled to 1 % after"),
+    ] {
+        fs::write(folder.path().join("own.toml"), text.replace("SCALED", scaled)).unwrap();
+        let said = stdout(&forwardstep(&folder, &["check", "own.toml", "--predict"]).code(0));
+        assert!(said.contains(part) && said.contains("(but") == (scaled != "1.0"), "{scaled}: {said}");
+    }
+}

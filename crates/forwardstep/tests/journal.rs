@@ -236,6 +236,20 @@ fn the_page_of_a_run_grows_until_it_has_ended() {
     }
 }
 
+/// A run makes its folder before it claims it: whoever follows it at that moment was told that there is no run.
+#[test]
+fn regress_who_follows_a_folder_that_was_just_made_waits_for_its_run() {
+    let folder = scenario();
+    let path = folder.path().join("soon");
+    fs::write(folder.path().join("mine/long.toml"), LONG.replace("end_s = 20", "end_s = 2")).unwrap();
+    fs::create_dir(&path).unwrap();
+    let follower = follow(&folder, "soon", &[]);
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(start(&folder, "soon").wait().unwrap().success());
+    let ended = follower.wait_with_output().unwrap();
+    assert!(ended.status.success(), "{ended:?}");
+}
+
 #[test]
 fn who_follows_a_run_to_its_end_has_the_page_that_it_wrote() {
     let folder = scenario();

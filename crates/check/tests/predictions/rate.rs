@@ -197,7 +197,7 @@ fn regress_a_rate_is_seen_over_the_time_that_it_takes_however_short_a_period_is(
         let found = period_rate(&setup, &mut go_on).unwrap();
         assert!((found.rate_per_s / wanted - 1.0).abs() < 0.02, "{found:?}, not {wanted}");
         assert!((found.factor - (found.rate_per_s * found.period_s).exp()).abs() < 1e-12 && found.periods > 1000);
-        assert!(found.wavers < 1e-3, "of single periods: {found:?}");
+        assert!(found.wavers < 3e-3, "of single periods: {found:?}");
     }
 }
 

@@ -393,7 +393,8 @@ fn start_of_estimates(off: f64) -> String {
     if off > NEAR {
         return "estimates start far from the truth".to_owned();
     }
-    format!("estimates start within {:.0} % of the truth", (100.0 * off).ceil())
+    // Five hundredths are five per cent, whatever is rounded.
+    format!("estimates start within {:.0} % of the truth", (100.0 * off - 1e-9).ceil())
 }
 
 /// A number with three decimal places, where these are digits that say something and not too many.

@@ -326,3 +326,28 @@ fn regress_a_disk_that_is_full_at_the_first_write_keeps_the_rows_it_took() {
     assert!(journal.step().is_break());
     assert_eq!(fs::read_dir(run.path()).unwrap().count(), 0);
 }
+
+/// A run that is too short for a journal, and whose files do not all get their names, leaves a folder that is known as a run's.
+#[test]
+fn regress_files_of_a_run_without_a_journal_are_known_whatever_fails() {
+    let carts = carts();
+    let outcome = whole(&carts);
+    let mut half_named = 0;
+    for left in 0.. {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run");
+        let faults = Arc::new(Mutex::new(Faults { left, fault: Fault::Broken, fired: false }));
+        let Ok(run) = RunFolder::create_on(Arc::new(Faulty(faults.clone())), &path, false) else { continue };
+        let written = write_run(&run, &record(&carts, &outcome), Options::default());
+        drop(run);
+        if !faults.lock().unwrap().fired {
+            assert!(left > 20, "{left} operations");
+            break;
+        }
+        let is_named = path.join("scenario.toml").exists() && !path.join("summary.json").exists();
+        half_named += usize::from(is_named);
+        let again = RunFolder::create(&path, true);
+        assert!(again.is_ok(), "operation {left}, {written:?}: {again:?}");
+    }
+    assert!(half_named > 3, "{half_named}");
+}

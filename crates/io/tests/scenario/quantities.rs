@@ -193,4 +193,9 @@ fn packets_of_all_links_together_are_limited_for_the_library_too() {
     let error = SetupError::from(setup.network.validate(10.0).unwrap_err());
     let words = "about 5200000 packets until the end of the run, but at most 5000000 are accepted";
     assert_eq!(error.to_string(), format!("network.delays[1].packets: {words}"));
+    // What is too many by less than two digits tell is not said to be as many as are accepted.
+    let link = PacketLink { every_s: 10.0 / 2_500_001.0, ..link };
+    setup.network.delays = vec![Delay::new(link.trace((0, 1), 10.0).unwrap()); 2];
+    let error = SetupError::from(setup.network.validate(10.0).unwrap_err());
+    assert!(error.to_string().contains("more than 5000000 packets"), "{error}");
 }
