@@ -96,7 +96,7 @@ fn a_run_that_was_killed_has_its_rows() {
     for (k, wait_ms) in [0, 30, 400, 1100, 1900].into_iter().enumerate() {
         let out = format!("killed-{k}");
         let mut run = start(&folder, &out);
-        assert!(has_journal(&mut run, &path(&out)) || k > 2);
+        assert!(has_journal(&mut run, &path(&out)) || k > 1);
         std::thread::sleep(Duration::from_millis(wait_ms));
         run.kill().unwrap();
         run.wait().unwrap();
@@ -111,7 +111,7 @@ fn a_run_that_was_killed_has_its_rows() {
         }
         let note = stderr(&forwardstep(&folder, &["report", &out, "--out", &format!("{out}-elsewhere")]).success());
         let again = stderr(&forwardstep(&folder, &["report", &out]).success());
-        // On a fast machine the last one may have come to its end, and not to its tables.
+        // On a fast machine those that are killed late may have come to their end, and not to their tables.
         let ended = note.contains("the run ended before its tables were written");
         assert_eq!(note.contains("Was cut off at t = ") || ended, cut_off, "{note}");
         assert_eq!(note, again);
@@ -119,7 +119,7 @@ fn a_run_that_was_killed_has_its_rows() {
         assert_eq!(here, elsewhere);
         counts.push(first_rows(&here, &whole));
         assert!(!cut_off || ended || fs::read_to_string(path(&out).join("report.html")).unwrap().contains("Cut off"));
-        assert!(!ended || k > 2, "{note}");
+        assert!(!ended || k > 1, "{note}");
         assert!(!names(&path(&out)).contains(&"rows.journal".to_owned()));
         if k == 1 {
             fs::rename(path("moved.csv"), path("links.csv")).unwrap();
