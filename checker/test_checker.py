@@ -30,7 +30,7 @@ SCENARIOS = HERE.parent / "crates" / "io" / "scenarios"
 NAMES = ("theorem-1", "theorem-2", "theorem-3-a5-order-3", "theorem-3-24-order-4", "theorem-8", "first-order",
          "five-ships", "saturated-coupling", "formulas", "cut")
 # As many as a release needs, or a sample of them.
-PAIRS = 500 if "FORWARDSTEP_LONG" in os.environ else 100
+PAIRS = 500 if "FORWARDSTEP_LONG" in os.environ else 60
 SEED = 11
 
 

@@ -140,7 +140,7 @@ fn rows() -> Vec<Vec<String>> {
 fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
     let rows = rows();
     assert_eq!(rows.len(), 23);
-    for row in &rows {
+    for row in some(&rows, 2) {
         let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
         let deployment = Deployment {
             late: late.strip_suffix(" h").map(|late| late.parse().unwrap()),
@@ -223,7 +223,7 @@ fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
     let here = folder();
     let schema: Value = serde_json::from_str(&stdout(&forwardstep(&here, &["schema", "check"]).success())).unwrap();
     assert_eq!(schema["title"], "forwardstep check");
-    for scenario in some(SHIPPED_SCENARIOS, 3) {
+    for scenario in some(SHIPPED_SCENARIOS, 5) {
         let run = forwardstep(&here, &["check", scenario.name]);
         let status = run.get_output().status.code().unwrap();
         let (text, found) = (stdout(&run), json(&here, &[scenario.name], status));

@@ -308,7 +308,7 @@ impl Draws {
 fn prop_no_claim_about_drawn_formulas_is_rejected() {
     let mut draws = Draws(1);
     let mut claims = 0;
-    let cases = if is_long() { 60 } else { 20 };
+    let cases = if is_long() { 60 } else { 12 };
     for case in 0..cases {
         let depth = 1 + case % 3;
         let formula = draws.formula(depth);
