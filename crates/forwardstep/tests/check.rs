@@ -3,16 +3,17 @@
 mod derivation;
 mod many;
 mod narrow;
+mod predictions;
 mod protocols;
+mod sampling;
 mod smoothness;
 mod whose;
 
 use std::fs;
 
 use crate::support::{folder, forwardstep, some, stderr, stdout};
-use forwardstep::check::{Id, SamplingMargin, WholeLoop};
-use forwardstep::io::output::Deployment;
-use forwardstep::io::scenario::{SHIPPED_SCENARIOS, open_scenario, shipped_scenario};
+use forwardstep::check::Id;
+use forwardstep::io::scenario::SHIPPED_SCENARIOS;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -129,95 +130,6 @@ fn practical_verdicts_stand_beside_the_hypotheses_and_count_where_they_are_asked
     assert!(said.contains("\nPractical: derived for this software, not in the paper\n  adequate: "), "{said}");
 }
 
-/// The table of SAMPLING.md, row by row.
-fn rows() -> Vec<Vec<String>> {
-    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../SAMPLING.md")).unwrap();
-    let rows = text.lines().filter(|line| line.starts_with("| ") && !line.starts_with("| Scenario"));
-    rows.map(|row| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
-}
-
-#[test]
-fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
-    let rows = rows();
-    assert_eq!(rows.len(), 23);
-    for row in some(&rows, 2) {
-        let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
-        let deployment = Deployment {
-            late: late.strip_suffix(" h").map(|late| late.parse().unwrap()),
-            filter_hz: velocity.strip_prefix("filtered at ").map(|hz| hz.trim_end_matches(" Hz").parse().unwrap()),
-        };
-        let setup = open_scenario(name).unwrap().setup;
-        let found = deployment.rule(&setup).unwrap();
-        let [rule, measured, ratio] = [rule, measured, ratio].map(|cell| cell.parse::<f64>().unwrap());
-        assert!((1e3 * found.period_s / rule - 1.0).abs() < 0.005, "{row:?}: {found:?}");
-        // What is learnt under way, of friction above all, is far on the safe side.
-        let least = match &name[..] {
-            "six-arms-with-friction" => 0.39,
-            "five-ships" => 0.74,
-            _ => 0.8,
-        };
-        assert!((rule / measured - ratio).abs() < 0.01 && ratio > least && ratio < 1.07, "{row:?}");
-        // What is said of that very deployment there.
-        let at = |share: f64| deployment.apply(&setup, share * found.period_s);
-        if found.linearised {
-            let grows = |share: f64| WholeLoop::of(&at(share)).unwrap().lasting_per_s().is_some();
-            assert!(!grows(0.99) && grows(1.01), "{row:?}");
-        } else {
-            let sigma = |share: f64| SamplingMargin::of(&at(share)).unwrap().worst.sigma;
-            assert!((sigma(1.0) - 1.0).abs() < 1e-6 && sigma(0.8) < 1.0 && sigma(1.1) > 1.0, "{row:?}");
-        }
-    }
-    let samples = |name: &str| open_scenario(name).unwrap().setup.control.is_some();
-    for scenario in SHIPPED_SCENARIOS.iter().filter(|scenario| samples(scenario.name)) {
-        assert!(rows.iter().any(|row| row[0] == scenario.name), "{} samples and has no row", scenario.name);
-    }
-}
-
-/// At rest they learn nothing, and what is learnt under way is what sampling bears least: these break down after four seconds.
-#[test]
-fn regress_ships_that_sample_too_slowly_for_their_way_are_not_called_adequate() {
-    let text = shipped_scenario("five-ships").unwrap().text;
-    let folder = folder();
-    fs::write(
-        folder.path().join("ships.toml"),
-        format!("{text}\n[control]\nsample_hz = 3\ncomputation_delay_s = 0.08\n"),
-    )
-    .unwrap();
-    let said = stdout(&forwardstep(&folder, &["check", "ships.toml"]).code(1));
-    assert!(said.contains("not shown: they sample fast enough for K and Γ"), "{said}");
-    assert!(said.contains(" on the way that its reference leads (ship-"), "{said}");
-    forwardstep(&folder, &["run", "ships.toml", "--out", "run"]).code(3);
-}
-
-/// All multipliers of a short period are close to one, on which the search of eigenvalues may stall.
-#[test]
-fn regress_short_periods_have_their_multipliers() {
-    for hz in some((600..680).chain([800, 1024, 5000, 20_000]), 9) {
-        let setup = open_scenario("theorem-7").unwrap().setup.sampled(f64::from(hz));
-        let found = WholeLoop::of(&setup).unwrap_or_else(|| panic!("{hz} Hz"));
-        assert!(found.start.leftmost.unwrap()[0] > 0.99 && found.lasting_per_s().is_none(), "{hz} Hz: {found:?}");
-    }
-}
-
-#[test]
-fn val_a_row_of_the_sampling_table_is_what_runs_say() {
-    let here = folder();
-    let said = |arguments: &[&str]| stdout(&forwardstep(&here, &[&["sampling-limit"], arguments].concat()).success());
-    let printed = said(&["theorem-2", "--late", "0.9", "--table"]);
-    let cells: Vec<String> = rows().into_iter().nth(3).unwrap();
-    assert_eq!(printed.lines().last().unwrap(), format!("| {} |", cells.join(" | ")));
-    let in_words = said(&["theorem-2", "--late", "0.9", "--peak-error", "2.5", "--disagreement", "0.2"]);
-    assert!(
-        in_words.contains("\n  rule       11.7 ms: ") && in_words.contains("|s| ≤ 2.500, and at most 2.00e-1 "),
-        "{in_words}"
-    );
-    // What no period can do.
-    let never = ["sampling-limit", "theorem-2", "--disagreement", "1e-300"];
-    let never = stdout(&forwardstep(&here, &never).code(1));
-    assert!(never.contains("\n  measured   – ms: no period that was tried gave this: |s| ≤ "), "{never}");
-    forwardstep(&here, &["sampling-limit", "theorem-2", "--late", "1.5"]).code(2);
-}
-
 #[test]
 fn the_document_says_what_the_words_say_and_keeps_to_its_schema() {
     let here = folder();
@@ -273,52 +185,6 @@ fn the_summary_of_a_run_keeps_to_its_schema() {
         wrong["unheard_of"] = Value::Bool(true);
         assert!(std::panic::catch_unwind(|| follows(&wrong, &schema, &schema)).is_err());
     }
-}
-
-#[test]
-fn predictions_are_made_where_they_are_asked_for_and_are_said_to_be_for_no_tracking_error() {
-    let folder = with(TWO);
-    let said =
-        |arguments: &[&str]| stdout(&forwardstep(&folder, &[&["check", "two.toml"], arguments].concat()).code(1));
-    assert!(!said(&[]).contains("Predicted"));
-    let text = said(&["--predict"]);
-    assert!(text.contains("Predicted for robots that follow their references exactly, s ≡ 0:"), "{text}");
-    let found = json(&folder, &["two.toml", "--predict"], 1);
-    let (course, rate) = (&found["prediction"]["course"]["found"], &found["prediction"]["rate"]["roots"]);
-    // The second arm hears the first with weight one: (p + 1)(p + 1)(p + 2)/2 beside p (p + 1)(p + 2)/2.
-    assert!((rate["root_per_s"][0].as_f64().unwrap() + 1.0).abs() < 1e-6, "{rate}");
-    assert_eq!((course["reached"].as_bool(), course["t_s"].as_array().map(Vec::len)), (Some(true), Some(301)));
-    let settled = format!("settled to 1 % after {:.2} s", course["settled_s"].as_f64().unwrap());
-    assert!(text.contains(&settled), "{settled}\n{text}");
-    let by_roots = rate["settled_s"].as_f64().unwrap() / course["settled_s"].as_f64().unwrap();
-    assert!((by_roots - 1.0).abs() < 0.02, "{by_roots}");
-    let value = course["within"].as_array().unwrap();
-    assert_eq!(value.len(), 2);
-    assert!(text.contains("value agreed upon (") && text.contains("peak torque "), "{text}");
-    assert!(rate["excited"].as_f64().unwrap() > 0.05, "of three roots in one place the largest is not at the start");
-    assert!(text.contains("rate: rightmost root −1 1/s"), "{text}");
-}
-
-#[test]
-fn a_run_predicts_unless_that_takes_longer_than_the_run() {
-    let folder = with(TWO);
-    let said = |arguments: &[&str]| {
-        stdout(&forwardstep(&folder, &[&["run", "two.toml", "--force"], arguments].concat()).success())
-    };
-    let (predicted, left_out) = ("Predicted for robots that follow", "No prediction: ");
-    let text = said(&[]);
-    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
-    // 2 agents of 2 axes, and 10 horizons of one for the rate: 24 axes.
-    let of_length = |end_s: &str| {
-        fs::write(folder.path().join("two.toml"), TWO.replacen("end_s = 30", end_s, 1)).unwrap();
-    };
-    of_length("end_s = 834");
-    let text = said(&[]);
-    assert!(!text.contains(predicted) && text.contains(left_out), "{text}");
-    let text = said(&["--predict"]);
-    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
-    of_length("end_s = 833");
-    assert!(said(&[]).contains(predicted));
 }
 
 /// Whether a document has what its schema requires, and nothing that it does not know.
@@ -494,22 +360,4 @@ fn what_changed_v_is_said_when_asked_and_adds_up() {
     let continuous = adapted.replace("[control]\nsample_hz = 500\ntorque_limit = [200, 100]\n", "");
     let told = stderr(&forwardstep(&with(&continuous), &["run", "two.toml", "--balance", "--out", "run"]));
     assert!(told.contains("--balance says nothing here"), "{told}");
-}
-
-/// Estimates that start close to the truth delay a run as well, where K and Γ are small: nothing was said of that.
-#[test]
-fn regress_estimates_that_start_near_the_truth_are_named_beside_a_settling_time() {
-    let folder = folder();
-    let text = "format = 2\ntime.end_s = 60\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 2 }\n\
-                start.position_m = [[0.0], [1.0]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n\
-                [law.adaptive]\ndamping.gain = 2\nadaptation_gain = 1\nestimate_start.scaled = SCALED\n[network]\nedges.ring = {}\n";
-    for (scaled, part) in [
-        ("0.95", "(but estimates start within 5 % of the truth"),
-        ("0.5", "(but estimates start far from the truth"),
-        ("1.0", "settled to 1 % after"),
-    ] {
-        fs::write(folder.path().join("own.toml"), text.replace("SCALED", scaled)).unwrap();
-        let said = stdout(&forwardstep(&folder, &["check", "own.toml", "--predict"]).code(0));
-        assert!(said.contains(part) && said.contains("(but") == (scaled != "1.0"), "{scaled}: {said}");
-    }
 }

@@ -15,8 +15,8 @@ fn count(said: &str, words: &str) -> u64 {
 #[test]
 fn nothing_is_refuted_in_a_minute() {
     let folder = folder();
-    // A sixth of one, unless there is time.
-    let [seconds, least] = if is_long() { ["60", "10"] } else { ["10", "1"] };
+    // A quarter of one, unless there is time.
+    let [seconds, least] = if is_long() { ["60", "10"] } else { ["15", "2"] };
     let arguments = ["falsify", "--seconds", seconds, "--cases", "2000", "--seed", "7"];
     let said = stdout(&forwardstep(&folder, &arguments).code(0));
     let least: u64 = least.parse().unwrap();

@@ -2,7 +2,6 @@
 //! 0.3 + 0.3 sin t touches zero.
 
 use alloc::vec::Vec;
-use core::ops::Range as Steps;
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
@@ -105,12 +104,13 @@ impl Algebra for Exact {
     }
 }
 
-/// Puts the exact number in the place of `part`, which is a value without variables, where floating point does not compute that.
-fn exactly(steps: &mut Vec<Step>, part: Steps<usize>) {
-    let value = Expression { steps: steps[part.clone()].to_vec() };
+/// Puts the exact number in the place of the value without variables that begins at `first`, where floating point does not compute that.
+fn exactly(steps: &mut Vec<Step>, first: usize) {
+    let value = Expression { steps: steps[first..].to_vec() };
     let exact = value.constant().filter(|number| number.exact().is_some());
     if let Some(exact) = exact.filter(|exact| exact.value().to_bits() != value.value(&[]).to_bits()) {
-        steps.splice(part, [Step::Number(exact)]);
+        steps.truncate(first);
+        steps.push(Step::Number(exact));
     }
 }
 
@@ -133,26 +133,20 @@ impl Expression {
         // Where each value that waits for its operator begins, and whether it has no variable.
         let mut waiting: Vec<(usize, bool)> = Vec::new();
         for step in &self.steps {
-            match step {
-                Step::Number(_) | Step::Variable(_) => waiting.push((steps.len(), matches!(step, Step::Number(_)))),
-                Step::Unary(_) | Step::Power(_) => {}
+            let value = match step {
+                Step::Number(_) => (steps.len(), true),
+                Step::Variable(_) => (steps.len(), false),
+                Step::Unary(_) | Step::Power(_) => waiting.pop().unwrap_or_default(),
                 Step::Binary(_) => {
-                    let (second, first) = (waiting.pop(), waiting.pop());
-                    if let (Some((second, second_is_constant)), Some((first, first_is_constant))) = (second, first) {
-                        // Only what stands beside something with a variable: the largest such part.
-                        if first_is_constant != second_is_constant {
-                            let part = if first_is_constant { first..second } else { second..steps.len() };
-                            exactly(&mut steps, part);
-                        }
-                        waiting.push((first, first_is_constant && second_is_constant));
-                    }
+                    let (second, first) = (waiting.pop().unwrap_or_default(), waiting.pop().unwrap_or_default());
+                    (first.0, first.1 && second.1)
                 }
-            }
+            };
             steps.push(step.clone());
-        }
-        if waiting == [(0, true)] {
-            let all = 0..steps.len();
-            exactly(&mut steps, all);
+            if value.1 {
+                exactly(&mut steps, value.0);
+            }
+            waiting.push(value);
         }
         Expression { steps }
     }

@@ -16,7 +16,7 @@ use super::{earlier, growing};
 use crate::scenario::inputs::INPUTS;
 use crate::scenario::run_folder::MANIFEST;
 
-/// The file whose presence says that a folder is complete: removed first and renamed last.
+/// The file whose presence says that a folder is complete: it is taken away first and gets its name last.
 pub(super) const SEAL: &str = "summary.json";
 /// That of a run which gives its files their names.
 pub(super) const NEW_SEAL: &str = ".summary.json.partial";

@@ -183,6 +183,10 @@ fn regress_numbers_that_cancel_do_so_in_a_run_as_well() {
         ("(1/3)*t", 2.0 / 3.0),
         ("sin(0.1 + 0.2 - 0.3 + t)", 2.0_f64.sin()),
         ("2*pi*t", 4.0 * std::f64::consts::PI),
+        // What is not rational as a whole has parts that are.
+        ("exp((0.1 + 0.2 - 0.3)*1e17)*t", 2.0),
+        ("sqrt(2 + (0.1 + 0.2 - 0.3)*1e18)", std::f64::consts::SQRT_2),
+        ("0.1^2*100*t", 2.0),
     ] {
         assert_eq!(value(text), wanted, "{text}");
     }

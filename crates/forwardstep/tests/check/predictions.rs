@@ -1,0 +1,70 @@
+//! What is predicted of a run before it, and what it is said to be of.
+
+use std::fs;
+
+use super::{TWO, json, with};
+use crate::support::{folder, forwardstep, stdout};
+
+#[test]
+fn predictions_are_made_where_they_are_asked_for_and_are_said_to_be_for_no_tracking_error() {
+    let folder = with(TWO);
+    let said =
+        |arguments: &[&str]| stdout(&forwardstep(&folder, &[&["check", "two.toml"], arguments].concat()).code(1));
+    assert!(!said(&[]).contains("Predicted"));
+    let text = said(&["--predict"]);
+    assert!(text.contains("Predicted for robots that follow their references exactly, s ≡ 0:"), "{text}");
+    let found = json(&folder, &["two.toml", "--predict"], 1);
+    let (course, rate) = (&found["prediction"]["course"]["found"], &found["prediction"]["rate"]["roots"]);
+    // The second arm hears the first with weight one: (p + 1)(p + 1)(p + 2)/2 beside p (p + 1)(p + 2)/2.
+    assert!((rate["root_per_s"][0].as_f64().unwrap() + 1.0).abs() < 1e-6, "{rate}");
+    assert_eq!((course["reached"].as_bool(), course["t_s"].as_array().map(Vec::len)), (Some(true), Some(301)));
+    let settled = format!("settled to 1 % after {:.2} s", course["settled_s"].as_f64().unwrap());
+    assert!(text.contains(&settled), "{settled}\n{text}");
+    let by_roots = rate["settled_s"].as_f64().unwrap() / course["settled_s"].as_f64().unwrap();
+    assert!((by_roots - 1.0).abs() < 0.02, "{by_roots}");
+    let value = course["within"].as_array().unwrap();
+    assert_eq!(value.len(), 2);
+    assert!(text.contains("value agreed upon (") && text.contains("peak torque "), "{text}");
+    assert!(rate["excited"].as_f64().unwrap() > 0.05, "of three roots in one place the largest is not at the start");
+    assert!(text.contains("rate: rightmost root −1 1/s"), "{text}");
+}
+
+#[test]
+fn a_run_predicts_unless_that_takes_longer_than_the_run() {
+    let folder = with(TWO);
+    let said = |arguments: &[&str]| {
+        stdout(&forwardstep(&folder, &[&["run", "two.toml", "--force"], arguments].concat()).success())
+    };
+    let (predicted, left_out) = ("Predicted for robots that follow", "No prediction: ");
+    let text = said(&[]);
+    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
+    // 2 agents of 2 axes, and 10 horizons of one for the rate: 24 axes.
+    let of_length = |end_s: &str| {
+        fs::write(folder.path().join("two.toml"), TWO.replacen("end_s = 30", end_s, 1)).unwrap();
+    };
+    of_length("end_s = 834");
+    let text = said(&[]);
+    assert!(!text.contains(predicted) && text.contains(left_out), "{text}");
+    let text = said(&["--predict"]);
+    assert!(text.contains(predicted) && !text.contains(left_out), "{text}");
+    of_length("end_s = 833");
+    assert!(said(&[]).contains(predicted));
+}
+
+/// Estimates that start close to the truth delay a run as well, where K and Γ are small: nothing was said of that.
+#[test]
+fn regress_estimates_that_start_near_the_truth_are_named_beside_a_settling_time() {
+    let folder = folder();
+    let text = "format = 2\ntime.end_s = 60\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 2 }\n\
+                start.position_m = [[0.0], [1.0]]\n[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n\
+                [law.adaptive]\ndamping.gain = 2\nadaptation_gain = 1\nestimate_start.scaled = SCALED\n[network]\nedges.ring = {}\n";
+    for (scaled, part) in [
+        ("0.95", "(but estimates start within 5 % of the truth"),
+        ("0.5", "(but estimates start far from the truth"),
+        ("1.0", "settled to 1 % after"),
+    ] {
+        fs::write(folder.path().join("own.toml"), text.replace("SCALED", scaled)).unwrap();
+        let said = stdout(&forwardstep(&folder, &["check", "own.toml", "--predict"]).code(0));
+        assert!(said.contains(part) && said.contains("(but") == (scaled != "1.0"), "{scaled}: {said}");
+    }
+}
