@@ -17,7 +17,9 @@
 # hypothesis is violated: then its witness was replayed, and the last line says so.
 #
 # What has to be trusted
-#  1. Python and these parts of its standard library: ast, csv, fractions, hashlib, json, tomllib, xml.etree.
+#  1. Python and these parts of its standard library: ast, csv, fractions, hashlib, json, math (of whole numbers), re, tomllib, xml.etree,
+#     collections, functools, itertools; and that its floats are doubles and printed by their shortest decimals: a number of a scenario is
+#     the double next to it, as a run takes it. An infinite float stands for an end that is not known. No others are computed with.
 #  2. This file: how it reads a scenario, which hypotheses it asks for (`requirements`), and the argument beside each `@rule`,
 #     and beside the entries of `TEXT` and `NUMBERS`.
 #  3. The mathematics behind the list: that the theorems follow from these hypotheses.
@@ -29,8 +31,8 @@
 #     immersion and invariance, have their regressors as slopes; an equation of a chain in feedback form has states up to its own, or to
 #     the next, alone, and others have those of their order; lists which stand for vectors have as many entries as the robot needs, agents
 #     that agree have as many axes as one another, and a table has no keys that are those of another design.
-# What has not to be trusted: forwardstep, floating point (decimals are rational numbers here, functions are enclosed by rational
-# Taylor sums that are rounded outwards), and digests (they only say which files were meant).
+# What has not to be trusted: forwardstep, rounding of floating point (decimals are rational numbers here, functions are enclosed by
+# rational Taylor sums that are rounded outwards), and digests (they only say which files were meant).
 
 import argparse, ast, collections, csv, functools, hashlib, io, itertools, json, math, re, signal, sys, tomllib
 import xml.etree.ElementTree as ElementTree
@@ -39,12 +41,11 @@ from pathlib import Path
 
 sys.setrecursionlimit(5_000)
 FORMAT, SHIPPED_ROBOTS = 1, Path(__file__).resolve().parent.parent / "crates" / "io" / "robots"
-ACCEPTED, REJECTED, UNCHECKED = "accepted", "rejected", "could not check"
-HOLDS, ON_RUN, VIOLATED = "holds", "holds on [0, end]", "violated"
+ACCEPTED, REJECTED, UNCHECKED, HOLDS, ON_RUN, VIOLATED = "accepted", "rejected", "could not check", "holds", "holds on [0, end]", "violated"
 UNCLAIMED = ("watched during the run", "not shown", "not covered by the paper")
 
-# What is larger is refused, so that nothing takes all memory.
-MOST_BYTES, MOST_DIGITS, MOST_NESTED = 64 << 20, 4000, 256
+# What is larger is refused, so that nothing takes all memory, or hours.
+MOST_BYTES, MOST_DIGITS, MOST_NESTED, MOST_NODES = 64 << 20, 4000, 256, 20_000
 MOST_AGENTS, MOST_EDGES, MOST_CELLS, MOST_ROWS, MOST_DEGREE, MOST_POINTS, MOST_EXPANDED = 200_000, 1_000_000, 100_000, 64, 16, 300, 6
 
 # A claim that is not shown: (words, where in the certificate).
@@ -181,11 +182,13 @@ def said(number): return str(number) if len(str(number)) <= 24 else f"{float(num
 INF, WHOLE = math.inf, (-math.inf, math.inf)
 FOR_EVER, LATE, LATER, END = (Fraction(0), INF), (Fraction(1), INF), (Fraction(1000_000), INF), (INF, INF)
 
-def infinite(x): return isinstance(x, float)
+def infinite(x): return isinstance(x, float) and decided(math.isinf(x), "a number was rounded", True)
+
+def bits(x): return 0 if infinite(x) else x.numerator.bit_length() + x.denominator.bit_length()
 
 # x, or a shorter number on the stated side of it, by less than one part in 2^150.
 def rounded(x, upwards):
-    if infinite(x) or x.numerator.bit_length() + x.denominator.bit_length() <= 600: return x
+    if bits(x) <= 600: return x
     scale = Fraction(2) ** (160 - x.numerator.bit_length() + x.denominator.bit_length())
     return (math.ceil if upwards else math.floor)(x * scale) / scale
 
@@ -209,7 +212,7 @@ def multiply(a, b):
 
 def inverse(a):
     if a[0] <= 0 <= a[1]: raise (Undefined if a[0] == a[1] else Undecided)("a divisor may be zero")
-    return span(*(Fraction(0) if infinite(x) else 1 / x for x in a))
+    return span(*(Fraction(0) if infinite(x) else Fraction(1) / x for x in a))
 
 def hull(a, b): return min(a[0], b[0]), max(a[1], b[1])
 
@@ -249,8 +252,8 @@ def sine(a, turned):
     if a == (0, 0): return (Fraction(turned),) * 2
     a = add(a, multiply(PI, (Fraction(1, 2),) * 2)) if turned else a
     low, high = hull(sine_at(a[0]), sine_at(a[1]))
-    for extreme in (-1, 1):
-        turns = [end / pi / 2 - Fraction(extreme, 4) for end in a for pi in PI]
+    for extreme in (Fraction(-1), Fraction(1)):
+        turns = [end / pi / 2 - extreme / 4 for end in a for pi in PI]
         if math.floor(max(turns)) >= math.ceil(min(turns)): low, high = min(low, extreme), max(high, extreme)
     return max(low, Fraction(-1)), min(high, Fraction(1))
 
@@ -272,22 +275,21 @@ def log_at(x):
 
 def sqrt_at(x):
     scale = 1 << max(0, 400 - x.numerator.bit_length() + x.denominator.bit_length())
-    root = math.isqrt(math.floor(x * scale * scale))
-    return Fraction(root, scale), Fraction(root + (root * root != x * scale * scale), scale)
+    return Fraction(root := math.isqrt(math.floor(x * scale * scale)), scale), Fraction(root + (root * root != x * scale * scale), scale)
 
 def tanh_at(x): return add((1, 1), multiply((-2, -2), inverse(add((1, 1), exp_at(2 * x)))))
 
 # By odd symmetry, π/2 − atan 1/x beyond one, and atan x = 2 atan(x/(1 + √(1 + x²))).
 def atan_at(x):
     if x < 0: return minus(atan_at(-x))
-    if x > 1: return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(1 / x)))
+    if x > 1: return add(multiply(PI, (Fraction(1, 2),) * 2), minus(atan_at(Fraction(1) / x)))
     ends = [rounded(x / (1 + end), side) for end, side in zip(sqrt_at(1 + x * x), (True, False))]
     return multiply((2, 2), (odd_series(ends[1], -1)[0], odd_series(ends[0], -1)[1]))
 
 def power(a, exponent):
     if exponent == 0: return (Fraction(1),) * 2
     if exponent.denominator == 1:
-        n = decided(abs(exponent) <= 1000, "an exponent is too large", abs(exponent.numerator))
+        n = decided(abs(exponent) * max(1 << 10, *map(bits, a)) <= 1 << 20, "a power is too large", abs(exponent.numerator))
         # An even power is one of |a|; now all of them rise.
         value = span(*(end**n for end in (magnitude(a) if n % 2 == 0 else a)))
         return inverse(value) if exponent < 0 else value
@@ -444,9 +446,7 @@ def resolved(tree, t):
     return tuple(resolved(part, t) if isinstance(part, tuple) else part for part in tree) if parts_of(tree) else tree
 
 def by_quotient(tree, t):
-    ratio = quotient(resolved(tree, t))
-    decided(ratio and any(ratio[1]), "is no quotient of polynomials")
-    return far(*map(trimmed, ratio), t)
+    return far(*map(trimmed, decided((ratio := quotient(resolved(tree, t))) and any(ratio[1]), "is no quotient of polynomials", ratio)), t)
 
 # The factors of a product; a divisor is one as a power.
 def factors_of(tree):
@@ -545,6 +545,8 @@ def constant_for_ever(tree):
 
 def plus(a, b): return b if a == ZERO else a if b == ZERO else ("+", a, b)
 
+nodes = once(lambda tree: 1 + sum(map(nodes, parts_of(tree))))
+
 # Nothing is dropped that may lack a value.
 def times(a, b): return ZERO if ZERO in (a, b) and not partial(a) and not partial(b) else b if a == ONE else a if b == ONE else ("*", a, b)
 
@@ -572,7 +574,7 @@ def root(tree):
 # By t, where there are no kinks. A quotient is a product with a power: its divisor is not squared again with every derivative.
 @once
 def derivative(tree):
-    kind = tree[0]
+    kind = decided(nodes(tree) <= MOST_NODES, "a derivative has too many terms", tree[0])
     if kind == "t" or not has_variable(tree): return ONE if kind == "t" else enclose(tree, WHOLE) and ZERO
     if kind == "points": return decided(tree[3] < 3, "a curve's third derivative jumps") or (*tree[:3], tree[3] + 1)
     a, *_, b = parts_of(tree) * 2
@@ -592,11 +594,20 @@ def derivative(tree):
 
 def limit(tree): return enclose(tree, END)
 
+# Whether an operation is continuous where its parts may tend to, ∞ among it: it makes no ∞ − ∞, 0 · ∞, ∞/∞ or x/0, and does not turn
+# for ever.
+def joins(tree):
+    ends = [attempt(limit, part) or WHOLE for part in parts_of(tree)] or [WHOLE]
+    (far, zero), (far_, zero_) = ((any(map(infinite, end)), end[0] <= 0 <= end[1]) for end in (ends[0], ends[-1]))
+    breaks = {"+": far and far_, "-": far and far_, "*": far and zero_ or zero and far_, "/": zero_ or far and far_,
+              "^": zero and tree[0] == "^" and tree[2] < 0, "f": far and tree[:2] in (("f", "sin"), ("f", "cos"))}
+    return not breaks.get(tree[0], False)
+
 # Whether a formula has one limit, which may be ∞.
 @once
 def settles(tree):
     tree, (low, high) = resolved(tree, END), attempt(limit, tree) or WHOLE
-    return low == high or (low, high) != WHOLE and not turns_for_ever(tree) and all(map(settles, parts_of(tree)))
+    return low == high or (low, high) != WHOLE and joins(tree) and all(map(settles, parts_of(tree)))
 
 # Whether a formula that is continuous is so uniformly from a time on: it has a limit that is finite, or a bounded slope, or is made of
 # what is so by what does not stretch, or by what has values on a bounded set, and is uniformly continuous there; √(c + x²) is
@@ -604,7 +615,7 @@ def settles(tree):
 @once
 def steady(tree, t):
     if (found := root(tree)) and steady(found[0], t): return True
-    if not has_variable(tree) or tree[0] == "t" or settles(tree) and not infinite(limit(tree)[0]): return True
+    if not has_variable(tree) or tree[0] == "t" or settles(tree) and not any(map(infinite, limit(tree))): return True
     plain = tree[0] in ("+", "-", "min", "max") or tree[0] == "f" and tree[1] not in ("exp", "log")
     compact = all(finite(part, [t]) for part in parts_of(tree)) and attempt(in_one_pass, tree, t) is not None
     return (plain or compact) and all(steady(part, t) for part in parts_of(tree)) or finite(attempt(derivative, tree) or ("state", ""), [t])
@@ -635,8 +646,7 @@ def period(tree):
 
 LAGRANGIAN, ARMS, MASS = ("planar_arm", "point_mass", "ship", "urdf"), ("planar_arm", "urdf"), ("point_mass",)
 # Each law, the robots that it is made for, and the keys of its gains. What is not written is positive by default.
-LAWS = {
-    "adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
+LAWS = {"adaptive": (LAGRANGIAN, "damping adaptation_gain"), "known": (LAGRANGIAN, "damping"),
     "linear_adaptive": (("chain", "vector_chain"), "gain_per_s adaptation_gain"), "linearising": (("chain", "vector_chain"), "gain_per_s"),
     "position_only": (MASS, "damping filter_per_s adaptation_gain"), "immersion": (("chain",), "gain_per_s adaptation_gain"),
     "thrust": (("vehicle", "rotorcraft"), "damping_per_s stiffness adaptation_gain estimate_start_kg"),
@@ -709,8 +719,7 @@ def roots_of(body):
     found = []
     if "alpha" in body:
         alpha, half = positive(body["alpha"], "alpha"), positive(body.get("beta", 1), "beta") / 2
-        apart = half * half - alpha
-        near = Fraction(math.isqrt(abs(apart.numerator) * 10**60 // apart.denominator) + (apart != 0), 10**30)
+        near = Fraction(math.isqrt(abs((apart := half * half - alpha).numerator) * 10**60 // apart.denominator) + (apart != 0), 10**30)
         return [(alpha, 0)] if "beta" not in body else [(half - near, 0), (half + near, 0)] if apart >= 0 else [(half, near)] * 2
     for root in listed(body["roots_per_s"], "roots_per_s") if "roots_per_s" in body else []:
         paired = root if isinstance(root, dict) else {"real": root, "imaginary": 0}
@@ -739,7 +748,7 @@ def routh(coefficients):
     return column
 
 # Desired dynamics as the design of the paper that they are: p K(p) beside weights of K(p), or K(p) with a target, K by its roots; and
-# before it whether they are one, and the polynomial of those that are none.
+# before it whether they are one, and the polynomial of those that are none. Of (a5) the root κ₀ that `heard` is of stands first.
 def designed(key, body):
     if key != "desired": return False, None, (key, body)
     own, coupled = (body[part] if isinstance(body.get(part), dict) else {} for part in ("polynomial", "coupling_polynomial"))
@@ -747,10 +756,11 @@ def designed(key, body):
     zeros, told, places = own.get("integrators", 0), "position_velocity" if heard[1:] else "position", body.get("written_in", "measured")
     product = polynomial({"roots_per_s": own["roots_per_s"]})[0] if roots else None
     same = zeros == 1 and not coupled.get("integrators", 0) and sorted(roots_of(coupled)) == sorted(roots) and places == "measured"
-    agrees = same and heard[:1] in ([], [product]) and all(not b and v * a == product for v in heard[1:] for a, b in roots[:1])
+    other = lambda root: not heard[1:] or isinstance(root, dict) or exact(root, "a root") * heard[1] != product
+    agrees = same and heard[:1] in ([], [product]) and (not heard[1:] or not heard[2:] and not all(map(other, own["roots_per_s"])))
     if not (roots and (alone(body) and not zeros if tracks else agrees and "nonlinear" not in body)):
         return False, polynomial(body["polynomial"]), (key, body)
-    return True, None, ("tracking" if tracks else "consensus", {"roots_per_s": own["roots_per_s"], "exchange": told})
+    return True, None, ("tracking" if tracks else "consensus", {"roots_per_s": sorted(own["roots_per_s"], key=other), "exchange": told})
 
 # Whether nothing but its polynomial and a target enters such dynamics.
 def alone(body): return body.get("follows_target", False) and not (body.get("heard") or {"coupling_polynomial", "nonlinear"} & set(body))
@@ -944,7 +954,7 @@ class Scenario:
         members = [self.vertex(name) for name in listed(body["among"], "among")] if "among" in body else list(range(len(self.agents)))
         direction, n = body.get("direction"), len(members)
         if rule == "random": return self.drawn_edges(members, exact(body.get("in_degree"), "in_degree"), body)
-        such(rule != "complete" or n * n <= MOST_EDGES, "there are too many edges")
+        such(rule != "complete" or n * n * len(self.file["network"].get("phases", "1")) <= MOST_EDGES, "there are too many edges")
         after = members[1:] + members[:1] * (rule == "ring" and n > 1)
         sources = [self.vertex(body.get("centre"))] if rule == "star" else members
         pairs = list(zip(members, after)) if rule in ("ring", "path") else [(a, b) for a in sources for b in members if a != b]
@@ -1075,8 +1085,7 @@ def requirements(scenario):
     tips, flying, chains, lagrangian, adaptive = ([agent for agent in agents if agent.law in laws] for laws in (
         ("task_space",), ("thrust",), CHAIN_LAWS, ("adaptive", "known"), ("linear_adaptive", "adaptive_backstepping")))
     designs = [{design_of(agent) for agent in flying if agent.robot == robot} for robot in ("vehicle", "rotorcraft")]
-    asked = [
-        (agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"), (flying, "nonzero-thrust"),
+    asked = [(agreeing, "spanning-tree"), (agreeing or reference == "desired", "dwell-time bounded-delays"), (flying, "nonzero-thrust"),
         (reference in ("consensus", "pure_integral"), "real-roots"), (reference == "pure_integral" or leading and not turns, "fixed-graph"),
         (reference == "consensus", "common-order" if len({len(a.roots) for a in agents}) == 1 else "own-orders"),
         (scenario.coupling and such((reference, scenario.exchange()) == ("consensus", "position"), "unlike it", 1), "coupling-sector"),
@@ -1717,8 +1726,7 @@ def ended(scenario, t):
                for agent in scenario.agents for first, end, trees, hand in agent.pushes)
 
 # Numbers of the text, or bounds of such. Agents that agree need real roots; those that follow need roots to the left of the axis.
-NUMBERS = {
-    "real-roots": (lambda s, x: left_of(x, s, s.agents) and not any(b for agent in s.agents for _, b in agent.roots),
+NUMBERS = {"real-roots": (lambda s, x: left_of(x, s, s.agents) and not any(b for agent in s.agents for _, b in agent.roots),
                    "is not a positive bound below all roots, or an agent has no roots, or a root is complex"),
     "hurwitz": (lambda s, x: left_of(x, s, rooted(s)), "is not a positive bound below all roots, or there are none"),
     "manipulability": (lambda s, x: x == max(agent.manipulability for agent in s.agents), "is not the largest gain"),
@@ -1818,9 +1826,7 @@ def bounded(claim, order, stretch):
             tree = derivative(tree)
 
 # A sine or cosine of what goes beyond every bound comes to 1 again and again.
-def repeats(tree): return turns_for_ever(tree) or attempt(period, tree) is not None
-
-def turns_for_ever(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and endless(tree[2])
+def repeats(tree): return tree[:2] in (("f", "sin"), ("f", "cos")) and endless(tree[2]) or attempt(period, tree) is not None
 
 def endless(tree): return attempt(limit, tree) in ((INF, INF), (-INF, -INF))
 
@@ -2060,7 +2066,7 @@ def check(certificate_text, scenario_text, folder, digests=True):
         if digests: same(document.field("scenario"), scenario_text, scenario.inputs)
         return found
     except (Rejected, Meaningless, Undecided) as error: failure = (error.outcome, *error.args, "")[:3]
-    except (RecursionError, MemoryError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError) as error:
+    except (RecursionError, MemoryError, ArithmeticError, ValueError, TypeError, LookupError, AttributeError, OSError, csv.Error) as error:
         failure = REJECTED, f"cannot be checked in this form ({type(error).__name__}: {str(error)[:80]})", ""
     return [*found, ("certificate", [], "", *failure)]
 
@@ -2094,9 +2100,8 @@ def agreed(scenario, node):
 def same(node, text, inputs):
     _, digest, files = node.fields("name", "sha256", "inputs")
     require(digest, digest.text() == hashlib.sha256(text.encode()).hexdigest(), "is not that of the scenario")
-    for file, digest in (entry.fields("file", "sha256") for entry in files.each()):
-        data = inputs.get(file.text())
-        require(digest, data is None or hashlib.sha256(data).hexdigest() == digest.text(), "is not that of the file")
+    for file, own in (entry.fields("file", "sha256") for entry in files.each()):
+        require(own, (data := inputs.get(file.text())) is None or hashlib.sha256(data).hexdigest() == own.text(), "is not that of the file")
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description="Check a certificate of forwardstep against a scenario, without forwardstep.")
@@ -2120,4 +2125,5 @@ def main(arguments=None):
 
 if __name__ == "__main__":
     if hasattr(signal, "SIGPIPE"): signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # Who reads may close before the end.
+    sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(main())

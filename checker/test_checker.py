@@ -2171,6 +2171,12 @@ class Hostile(unittest.TestCase):
         for old, new in changes.items():
             self.assertIn(old, self.SCENARIO)
             self.reject(certificate, self.SCENARIO.replace(old, new, 1))
+        for name in ("x" * 300 + ".csv", "wide.csv"):
+            with tempfile.TemporaryDirectory() as place:
+                Path(place, "wide.csv").write_text("from,to\n" + "a" * 200_000 + ",b\n")
+                text = self.SCENARIO.split("[network]")[0] + f'[network]\nedges.csv = {{ file = "{name}" }}\n'
+                found = checker.check(certificate, text, Path(place))
+                self.assertEqual(found[-1][3], checker.REJECTED, found)
         self.reject(certificate, self.SCENARIO.replace("weight = 1.0", 'weight = "' + "(" * 3000 + "t" + ")" * 3000 + '"'))
 
 
@@ -2180,6 +2186,19 @@ def nodes(value, path=()):
     if isinstance(value, (dict, list)):
         for key, entry in value.items() if isinstance(value, dict) else enumerate(value):
             yield from nodes(entry, (*path, key))
+
+
+MASSES = """format = 2
+time.end_s = 10
+[[agents]]
+name = "m"
+count = {count}
+robot.point_mass = {{ dimension = 1, mass_kg = 2 }}
+start.position_m = [0]
+[law.known]
+[reference]
+{reference}
+"""
 
 
 class Enclosures(unittest.TestCase):
@@ -2196,6 +2215,37 @@ class Enclosures(unittest.TestCase):
                 self.assertLessEqual(found[0], found[1])
                 self.assertLess(found[1] - found[0], 1e-25 * max(1, abs(value)))
                 self.assertAlmostEqual(float(found[0]) / max(1, abs(value)), value / max(1, abs(value)), 12)
+
+    def test_no_number_is_rounded_on_the_way(self):
+        """A crest inside is a rational number like all others, of which there are inverses and powers."""
+        for text, expected in (("1/cos(sin(t))", (1, 1 / math.cos(1))), ("cos(sin(t))^-2", (1, math.cos(1) ** -2)), ("pi/cos(sin(t))", (math.pi, math.pi / math.cos(1))),
+                               ("cos(pi + sin(t))^-1", (-1 / math.cos(1), -1)), ("1/cos(sin(t)) - 1 + exp(-t)", (0, 1 / math.cos(1) - 1 + math.exp(-1)))):
+            found = checker.enclose(checker.formula(text), checker.LATE)
+            self.assertTrue(all(type(end) is checker.Fraction for end in found), text)
+            for end, true in zip(found, expected): self.assertAlmostEqual(float(end), true, 9, text)
+        self.assertRaises(checker.Undecided, checker.infinite, 1.0)
+
+    def test_what_would_take_hours_or_all_memory_is_not_decided(self):
+        for text in ("((2^1000)^1000)^1000", "1 + tanh((((t/9)^1000)^1000)^1000)", "(1 + t)^1025"):
+            self.assertRaises(checker.Undecided, checker.enclose, checker.formula(text), (checker.Fraction(1), checker.Fraction(2)))
+        tree = checker.formula("sin(t)*cos(2*t)*sin(3*t)*sin(5*t)")
+        with self.assertRaises(checker.Undecided):
+            for _ in range(9): tree = checker.derivative(tree)
+        for phases, refused in ((1, False), (3, True)):
+            text = MASSES.format(count=700, reference="consensus.roots_per_s = [1, 2]\nconsensus.exchange = \"position\"")
+            text += "[network]\ndelay.constant_s = 0.1\n" + "[[network.phases]]\ndwell_s = 1.0\nedges.complete = {}\n" * phases
+            if refused:
+                with self.assertRaisesRegex(checker.Meaningless, "too many edges"): checker.Scenario(text, Path(), ())
+            else: self.assertEqual(len(checker.Scenario(text, Path(), ()).graphs[0]), 700 * 699)
+
+    def test_a_desired_design_is_one_whatever_root_stands_first(self):
+        """κ₀ is the root that the velocity which is heard is divided by."""
+        for heard, known in (("", [1, 2]), ("[2]", [1, 2]), ("[2, 2]", [1, 2]), ("[2, 1]", [2, 1]), ("[2, 3]", None), ("[3]", None), ("[2, 1, 1]", None)):
+            own = 'polynomial = { integrators = 1, roots_per_s = [1, 2] }\ncoupling_polynomial.roots_per_s = [2, 1]\n'
+            text = MASSES.format(count=2, reference=f"desired = {{ {own.strip().replace(chr(10), ', ')}{f', heard = {heard}' if heard else ''} }}")
+            scenario = checker.Scenario(text + "[network]\nedges.ring = {}\n", Path(), ())
+            self.assertEqual(scenario.desired, known is not None, heard)
+            if known: self.assertEqual([kappa for kappa, _ in scenario.agents[0].roots], known, heard)
 
     def test_functions_are_enclosed_to_sixty_digits(self):
         """Held against `decimal`, and series in it."""
@@ -2255,7 +2305,12 @@ class Enclosures(unittest.TestCase):
                                ("min(1, abs(t*sin(t)))", False), ("sin(exp(t))", False), ("tanh(t*sin(t))", False), ("sin(t)*sin(t^2)", False),
                                ("tanh(t^2)*sin(t^2)", False), ("abs(sin(t*sin(t)))", False), ("sqrt(1 + t^2)", True), ("sqrt((t + sin(t))^2 + 2)", True),
                                ("sqrt(1 + t + t^2)", True), ("sqrt(1 + t)*cos(sqrt(1 + t))", True), ("sin(sqrt(2 + (t - 3)^2)*t)", False),
-                               ("sqrt(2 + (t - 3)^2)/(1 + t)", True), ("sqrt(1 + t)*cos(t)", False), ("sqrt(1 + (t^2)^2)", False), ("sqrt(1 + t^3)", False), ("sqrt(1 + sqrt(2 + t)^2)", True)):
+                               ("sqrt(2 + (t - 3)^2)/(1 + t)", True), ("sqrt(1 + t)*cos(t)", False), ("sqrt(1 + (t^2)^2)", False), ("sqrt(1 + t^3)", False), ("sqrt(1 + sqrt(2 + t)^2)", True),
+                               # What tends to ∞, or to zero, above and below a line tells nothing of the quotient.
+                               ("((t + 1)*(2 + sin(t^2)))/(t + 1)", False), ("(exp(-t)*(2 + sin(t^2)))/exp(-t)", False),
+                               ("(t + 1)*((2 + sin(t^2))/(t + 1))", False), ("(t + 1)*(2 + sin(t^2)) - (t + 1)*sin(t^2) - 2*t", False),
+                               ("(t + sin(t^2)) - t", False), ("(t + sin(t^2)) + (1 - t)", False), ("(sin(t^2)/t)/(1/t)", False),
+                               ("1/cos(sin(t))", True), ("(1 + t)^-1*(1 + exp(-t))", True), ("t^2*(2 + exp(-t))", False)):
             tree = checker.formula(text)
             for start in (checker.LATE, checker.FOR_EVER): self.assertEqual(checker.steady(tree, start), expected, text)
 
@@ -2296,9 +2351,9 @@ class Enclosures(unittest.TestCase):
             if depth == 0 or draw.random() < 0.15: return draw.choice(leaves)
             a, b = drawn(depth - 1), drawn(depth - 1)
             return draw.choice((f"({a} + {b})", f"({a} - {b})", f"{a}*{b}", f"{a}*{b}", f"{a}/(1 + abs({b}))", f"abs({a})", f"min({a}, {b})",
-                                f"max({a}, {b})", f"tanh({a})"))
+                                f"max({a}, {b})", f"tanh({a})", f"cos({a})", f"{a}/(1.5 + sin({b}))", f"cos(sin({a}))^-1", f"1/cos(tanh({a}))"))
 
-        for _ in range(150):
+        for _ in range(200):
             text = drawn(3)
             tree = checker.formula(text)
             value = lambda t, text=text: eval(text.replace("^", "**"), {"t": t, **vars(math)})  # noqa: E731
