@@ -1,6 +1,7 @@
 """Checks that a page says what is known, and no more: ages of what is heard, graphs that are not drawn, runs that blow up or end at once."""
 
 import csv
+import io
 import re
 import signal
 import subprocess
@@ -32,6 +33,8 @@ edges = [["point-1", "point-2"], ["point-2", "point-3"]]
 [[network.phases]]
 dwell_s = 0.02
 edges = [["point-3", "point-4"], ["point-4", "point-1"]]"""
+
+DRAWN = TURNS.replace("[[network.phases]]\ndwell_s = 0.01", "switching.random = { seed = 1, dwell_s = [0.01, 0.02] }\n[[network.phases]]").replace("dwell_s = 0.02\n", "")
 
 
 def masses(folder, name, network, end=4, every=0.1, count=4, law="", title="Masses"):
@@ -84,16 +87,27 @@ def ages(browser, folder):
 
 
 def turns(browser, folder):
-    """Graphs that take turns more often than a page can hold: unknown from then on, and in force as long as they are."""
+    """Graphs that take turns more often than a page can hold: known from then on where they do so again and again, and in force as long as they are."""
     browser.open(folder.run("turns", masses(folder, "turns", TURNS, end=90)))
     settled(browser, 30)
     expect("2 edges." in words(browser), f"turns: at 30 s {words(browser)}")
-    settled(browser, 80)
-    expect("not drawn after 60 s" in words(browser), f"turns: at 80 s {words(browser)}")
-    expect(value(browser, "s.flights(80).length") == 0, "turns: edges are drawn where the graph is unknown")
+    for t, sender in [(80.005, "point-3"), (80.015, "point-1"), (89.999, "point-3")]:
+        settled(browser, t)
+        expect("2 edges." in words(browser) and f"({sender} " in words(browser), f"turns: at {t} s {words(browser)}")
+    rows = list(csv.reader(io.StringIO(value(browser, "s.table('gantt')"))))
+    expect(rows[0] == ["edge", "from, in s", "to, in s"] and len(rows) > 4000, f"turns: a table of {len(rows)} rows, {rows[0]}")
+    expect([row[0] for row in rows[1:5]] == ["point-1 → point-2", "point-2 → point-3", "point-3 → point-4", "point-4 → point-1"], f"turns: {rows[1:5]}")
+    expect([abs(float(row[1]) - 0.01) < 1e-9 and abs(float(row[2]) - 0.03) < 1e-9 for row in rows[3:5]] == [True, True], f"turns: {rows[3:5]}")
+    fold = "document.querySelector('[data-plot=gantt] .exports details')"
+    browser.run(f"{fold}.open = true; {fold}.dispatchEvent(new Event('toggle'))")
+    expect(value(browser, f"{fold}.querySelectorAll('tbody tr').length") == 60, "turns: the table under the strip")
     shares = text(browser, "#network figcaption")
     expect("in force 30 s" in shares and "in force 60 s" in shares, f"turns: {shares}")
     expect("not drawn after 60 s" in value(browser, "document.querySelector('[data-plot=gantt] .canvas').getAttribute('aria-label')"), "turns: the strip says nothing")
+    browser.open(folder.run("drawn", masses(folder, "drawn", DRAWN, end=90)))
+    settled(browser, 80)
+    expect("not drawn after" in words(browser), f"drawn: at 80 s {words(browser)}")
+    expect(value(browser, "s.flights(80).length") == 0, "drawn: edges are drawn where the graph is unknown")
     browser.open(folder.run("saw", masses(folder, "saw", "delay.saw_tooth = { min_s = 0.05, max_s = 0.4, period_s = 0.6 }\nedges.ring = {}", end=3000, every=1)))
     between = [edge["between"] for t in [10, 1234, 2999] for edge in value(browser, f"s.flights({t})")]
     expect(all(b and abs(b[0] - 0.05) < 2e-3 and abs(b[1] - 0.4) < 2e-3 for b in between), f"saw: {between[:3]}")

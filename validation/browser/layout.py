@@ -232,6 +232,43 @@ return [over.querySelector(".readout").hidden, box.left - card.left, card.right 
 """
 
 
+BALANCE = """
+const card = document.querySelector("[data-plot=balance]");
+const buttons = () => [...card.querySelectorAll(".pick button")];
+const names = buttons().map((button) => button.textContent);
+for (let k = 0; k < names.length; k++) { buttons()[k].click(); await frames(2); }
+return [names, card.hidden, card.querySelector("h3").firstChild.textContent.trim()];
+"""
+
+
+def balances(browser, name, expected, title):
+    """What a card offers it can draw: it does not go when that is chosen."""
+    names, hidden, found = waited(browser, FRAMES + BALANCE)
+    expect((names, hidden, found) == (expected, False, title), f"{name}: the card of V offers {names}, hidden {hidden}, {found}")
+
+
+def alone(browser, page, name):
+    """Of one agent alone no card says that there is nothing to say."""
+    browser.open(page)
+    drawn(browser)
+    found = value(browser, "[...document.querySelectorAll('.card')].filter((card) => !card.hidden && card.querySelector('.none')).map((card) => card.dataset.plot)")
+    expect(found == [] and value(browser, "document.querySelector('#network') === null"), f"{name}: cards without a plot: {found}")
+    expect(value(browser, "document.querySelector('#stage [data-plot=position] .u-over') !== null"), f"{name}: no positions at the top")
+
+
+def rows_as_recorded(browser, page, name, joint):
+    """A CSV of a plot, and a path in a plane, have values at times at which they occurred, though there is no room for all."""
+    browser.open(page)
+    drawn(browser)
+    recorded = {float(row["t_s"]): row for row in csv.DictReader(page.with_name("trajectory.csv").open())}
+    for plot, letter in [("torque", "tau"), ("position", "q")]:
+        head, *rows = csv.reader(io.StringIO(value(browser, f"s.table('{plot}')")))
+        columns = [f"{agent.rsplit(' in ', 1)[0]}.{letter}.{joint}" for agent in head[1:]]
+        far = lambda row: any(abs(float(a) - float(recorded[float(row[0])][b])) > 1e-5 * max(1.0, abs(float(a))) for a, b in zip(row[1:], columns))  # noqa: E731
+        wrong = [row[0] for row in rows if float(row[0]) not in recorded or far(row)]
+        expect(100 < len(rows) < len(recorded) and not wrong, f"{name}: {plot} has {len(rows)} of {len(recorded)} rows, wrong at {wrong[:3]}")
+
+
 def readouts(browser, page, name):
     """What a plot says under the cursor stays within its card, whatever is pointed at."""
     for width, height in [(1024, 768), (390, 844)]:
@@ -333,6 +370,15 @@ def check(browser, folder):
     chosen(browser, "sixty", 60)
     browser.open(folder.run("theorem-7"))
     joints(browser, "theorem-7")
+    units(browser, "theorem-7", "velocity", "Angular velocity and reference", "rad/s")
+    rows_as_recorded(browser, folder.run("with-rows", "six-arms", "--csv"), "six-arms", "shoulder_pan_joint")
+    sampled = masses(folder, "sampled", RING, law="damping.gain = 5\n[control]\nsample_hz = 100")
+    browser.open(folder.run("sampled", sampled))
+    balances(browser, "sampled", [], "Lyapunov function")
+    browser.open(folder.run("theorem-1"))
+    balances(browser, "theorem-1", ["V", "V + ∫ dissipation", "error"], "Lyapunov balance")
+    one = masses(folder, "one", "edges = []", count=1)
+    alone(browser, folder.run("one", one), "one alone")
     browser.open(folder.run("gusts"))
     units(browser, "gusts", "external", "External forces", "N")
     complaints = browser.complaints()

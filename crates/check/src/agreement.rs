@@ -59,16 +59,18 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// The value on every axis, to six digits after the point at most, and no more than are known.
+    /// The value on every axis, to six places after the point at most, or three digits of the largest where all are small, and no more than
+    /// are known.
     pub fn known_digits(&self) -> Vec<String> {
+        let largest = self.value.iter().map(|value| libm::fabs(*value)).fold(0.0, f64::max);
+        let most = if largest > 0.0 { (2.0 - libm::floor(libm::log10(largest))).clamp(6.0, 300.0) as usize } else { 6 };
         let each = self.value.iter().zip(&self.error_bound);
-        each.map(|(value, error_bound)| known_digits(*value, *error_bound)).collect()
+        each.map(|(value, error_bound)| known_digits(*value, *error_bound, most)).collect()
     }
 }
 
-fn known_digits(value: f64, error_bound: f64) -> String {
-    const SCALES: [f64; 7] = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
-    match SCALES.iter().rposition(|scale| error_bound * scale <= 0.5) {
+fn known_digits(value: f64, error_bound: f64, most: usize) -> String {
+    match (0..=most).rev().find(|places| error_bound * libm::pow(10.0, *places as f64) <= 0.5) {
         Some(digits) => {
             // What rounds to zero has no sign.
             let text = format!("{value:.digits$}");
@@ -105,9 +107,12 @@ pub enum NoPrediction {
     /// Held inputs conserve the quantity only in the limit of short periods.
     #[error("the controllers sample")]
     Sampled,
-    /// Agents follow targets of their own, or a law whose tracking error stays in what is conserved.
+    /// They do not agree with each other.
+    #[error("agents follow targets of their own")]
+    Targets,
+    /// A law whose tracking error stays in what is conserved.
     #[error(
-        "only robots under the adaptive or the known law, vehicles and chains of derivatives that agree with each other have one"
+        "only robots under the adaptive or the known law, vehicles, and chains of derivatives of order two or more have one"
     )]
     Law,
     /// Its start does not fit, or it keeps an offset that its law does not know.
@@ -189,7 +194,10 @@ pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
     if setup.following().is_some() {
         return Err(NoPrediction::Leader);
     }
-    if setup.all_track() || !setup.agents.iter().all(conserves) {
+    if setup.all_track() {
+        return Err(NoPrediction::Targets);
+    }
+    if !setup.agents.iter().all(conserves) {
         return Err(NoPrediction::Law);
     }
     if !is_consensus(setup) {
@@ -274,11 +282,19 @@ mod tests {
 
     #[test]
     fn only_known_digits_are_printed_and_zero_has_no_sign() {
-        assert_eq!(known_digits(-0.75, 1e-15), "-0.750000");
-        assert_eq!(known_digits(-1e-9, 1e-15), "0.000000");
-        assert_eq!(known_digits(-0.0, 0.0), "0.000000");
-        assert_eq!(known_digits(0.123_456_7, 4e-4), "0.123");
-        assert_eq!(known_digits(-0.4, 0.3), "0");
-        assert_eq!(known_digits(1234.5, 20.0), "1234 ± 2e1");
+        assert_eq!(known_digits(-0.75, 1e-15, 6), "-0.750000");
+        assert_eq!(known_digits(-1e-9, 1e-15, 6), "0.000000");
+        assert_eq!(known_digits(-0.0, 0.0, 6), "0.000000");
+        assert_eq!(known_digits(0.123_456_7, 4e-4, 6), "0.123");
+        assert_eq!(known_digits(-0.4, 0.3, 6), "0");
+        assert_eq!(known_digits(1234.5, 20.0, 6), "1234 ± 2e1");
+        let small = |value: [f64; 2]| Prediction {
+            value: value.into(),
+            error_bound: vec![1e-22; 2],
+            influence: Vec::new(),
+            influence_error: 0.0,
+        };
+        assert_eq!(small([5e-7, -1.25e-9]).known_digits(), ["0.000000500", "-0.000000001"]);
+        assert_eq!(small([0.5, 1e-9]).known_digits(), ["0.500000", "0.000000"]);
     }
 }

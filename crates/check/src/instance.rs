@@ -47,13 +47,16 @@ pub(crate) fn design(setup: &Setup) -> Option<(Design, RootSet)> {
         let alone = *integrators == 0 && desired.coupling.is_none() && desired.heard.is_empty();
         return alone.then(|| (Design::Tracking, roots.clone()));
     }
-    let agrees = *integrators == 1 && couples_by(desired, roots) && hears(desired, roots);
+    if *integrators != 1 || !couples_by(desired, roots) {
+        return None;
+    }
+    let roots = hears(desired, roots)?;
     let design = match desired.written {
         WrittenIn::Measured => Design::Consensus,
         WrittenIn::X if roots.len() == 2 && lagrangian(setup) => Design::PureIntegral,
         WrittenIn::X | WrittenIn::Z => return None,
     };
-    agrees.then(|| (design, roots.clone()))
+    Some((design, roots))
 }
 
 fn lagrangian(setup: &Setup) -> bool {
@@ -67,16 +70,20 @@ fn couples_by(desired: &Desired, roots: &RootSet) -> bool {
     own.len() == roots.len() && product(own) == product(roots)
 }
 
-/// Whether what is heard is α₀ x_j, or (α₀/κ₀)(p + κ₀) x_j.
-fn hears(desired: &Desired, roots: &RootSet) -> bool {
+/// The roots where what is heard is α₀ x_j, or (α₀/κ₀)(p + κ₀) x_j with κ₀ for one of them, which then stands first.
+fn hears(desired: &Desired, roots: &RootSet) -> Option<RootSet> {
     let alpha_0 = Factors::written(roots).product().coefficient(0);
-    let kappa_0 = roots.first_real().map(Number::written);
     let heard: Vec<_> = desired.heard.iter().map(|number| Number::written(*number)).collect();
     match &heard[..] {
-        [] => true,
-        [position] => *position == alpha_0,
-        [position, velocity] => *position == alpha_0 && kappa_0.is_some_and(|kappa_0| velocity * kappa_0 == alpha_0),
-        _ => false,
+        [] => Some(roots.clone()),
+        [position] => (*position == alpha_0).then(|| roots.clone()),
+        [position, velocity] if *position == alpha_0 => {
+            let first = roots.real.iter().position(|kappa| velocity * Number::written(*kappa) == alpha_0)?;
+            let mut roots = roots.clone();
+            roots.real[..=first].rotate_right(1);
+            Some(roots)
+        }
+        _ => None,
     }
 }
 

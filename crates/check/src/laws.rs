@@ -40,7 +40,7 @@ pub(crate) fn claim(setup: &Setup) -> Option<Claim> {
     } else {
         Claim {
             theorem: Theorem::Mixture(treated),
-            promises: "all agents agree and come to rest: x_i − x_j → 0 and dx_i → 0".into(),
+            promises: "all agents agree and come to rest: xᵢ − xⱼ → 0 and ẋᵢ → 0".into(),
         }
     })
 }

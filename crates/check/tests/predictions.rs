@@ -105,7 +105,7 @@ fn every_reason_for_which_there_is_none_is_the_one_that_is_said() {
     assert_eq!(said(&|_| {}), None);
     let backstepping = Arc::new(Backstepping { filter_s: 0.1, acceleration_limit: None });
     assert_eq!(said(&|setup| setup.reference = backstepping.clone()), Some(NoPrediction::Backstepping));
-    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPrediction::Law));
+    assert_eq!(said(&|setup| setup.reference = Arc::new(Tracking)), Some(NoPrediction::Targets));
     let blind = || {
         let mut agent = blind_mass(1.0, 1.0);
         agent.roots_per_s = vec![1.0, 2.0].into();

@@ -48,7 +48,7 @@ fn own_a_tip_by_its_velocity_asks_for_what_theorem_6_does_and_is_not_of_the_pape
     assert_eq!(asked(&measured), asked(&integrated));
     assert_eq!(measured.theorem.source(), Source::Derived);
     assert!(measured.theorem.to_string().starts_with("no theorem of the paper"), "{}", measured.theorem);
-    assert!(measured.promises.contains("by a measured dx"), "{}", measured.promises);
+    assert!(measured.promises.contains("by a measured ẋ"), "{}", measured.promises);
     // Beside an arm under Theorem 6 the promise names both.
     let mut both = by_velocity();
     both.agents.extend(shipped("theorem-6").agents);

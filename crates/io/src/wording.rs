@@ -18,6 +18,14 @@ pub(crate) fn beginning(text: &str, letters: usize) -> String {
     }
 }
 
+/// A time of a run in s, to a hundredth, or four digits of a shorter one.
+pub fn instant(t_s: f64) -> String {
+    if t_s == 0.0 || t_s.abs() >= 0.1 || !t_s.is_finite() {
+        return format!("{t_s:.2}");
+    }
+    number(format!("{t_s:.3e}").parse().unwrap_or(t_s)).to_string()
+}
+
 /// "1 list", "2 lists".
 pub(crate) fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }

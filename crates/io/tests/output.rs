@@ -194,13 +194,13 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     let (head, why) = sentence(&setup, 1e-8, 1e8, gains(200.0, Some(3e7)));
     assert_eq!(
         head,
-        "Broke down at t = 0.5 s of 2 s: arm-2.dq.2 has the largest error in steps of 1e-8 s, in which all that is sent within \
-         the longest delay, 0.4 s, takes 3.2e12 bytes where `memory_budget_bytes` is 1073741824"
+        "Broke down at t = 0.5 s of 2 s: arm-2.dq.2 has the largest error in steps of 1 × 10⁻⁸ s, in which all that is sent within \
+         the longest delay, 0.4 s, takes 3.2 × 10¹² bytes where `memory_budget_bytes` is 1073741824"
     );
     assert_eq!(
         why,
-        "the closed loop is stiff, its fastest rate is about 1e8 1/s; at arm-2 K/λ_min(M) is about 200 1/s and \
-         √(Γ‖Y‖²/λ_min(M)) is about 3e7 1/s: lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows \
+        "the closed loop is stiff, its fastest rate is about 1 × 10⁸ 1/s; at arm-2 K/λ_min(M) is about 200 1/s and \
+         √(Γ‖Y‖²/λ_min(M)) is about 3 × 10⁷ 1/s: lower `law.adaptive.adaptation_gain`, or let it start nearer and slower: Y grows \
          with the motion."
     );
     let (_, why) = sentence(&setup, 1e-8, 1e8, gains(4e8, Some(1e3)));
@@ -209,9 +209,9 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     assert!(why.contains("no gain of its law explains it"), "{why}");
     let rubs = Some(GainRates { damping_per_s: 50.0, viscous_per_s: 8e7, adaptation_per_s: Some(1e3) });
     let (_, why) = sentence(&setup, 1e-8, 1e8, rubs);
-    assert!(why.contains(" D/λ_min(M) is about 8e7 1/s and ") && why.contains("state the `armature`"), "{why}");
+    assert!(why.contains(" D/λ_min(M) is about 8 × 10⁷ 1/s and ") && why.contains("state the `armature`"), "{why}");
     let (_, why) = sentence(&setup, 1e-8, 1e8, None);
-    assert_eq!(why, "the closed loop is stiff, its fastest rate is about 1e8 1/s.");
+    assert_eq!(why, "the closed loop is stiff, its fastest rate is about 1 × 10⁸ 1/s.");
     let (_, why) = sentence(&setup, 1e-8, 1e6, gains(1e6, None));
     assert_eq!(
         why,
@@ -231,7 +231,7 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     assert!(under_floor(&setup, 200.0).ends_with(not_stiff));
     setup.agents[1].law = Arc::new(Known { damping: Gain::Number(1.0) });
     let (_, why) = sentence(&setup, 1e-8, 1e8, gains(1e8, None));
-    assert!(why.ends_with("K/λ_min(M) is about 1e8 1/s: lower `law.known.damping`."), "{why}");
+    assert!(why.ends_with("K/λ_min(M) is about 1 × 10⁸ 1/s: lower `law.known.damping`."), "{why}");
     setup.solver.max_step_s = Some(1e-8);
     let (_, why) = sentence(&setup, 1e-8, 1e3, None);
     assert!(why.ends_with("1000 1/s: raise `max_step_s`, loosen the tolerances, or raise the budget."), "{why}");
@@ -249,11 +249,11 @@ fn regress_a_thrust_that_vanishes_is_named_and_who_samples_is_told_to_sample_fas
         let cause = BreakdownCause::Vanished { value: 0.7267, floor: 1.0 };
         ending_sentence(setup, &Ending::BrokeDown(Breakdown { t_s: 0.5, agent: 1, signal, axis: 0, cause }))
     };
-    let thrust = "sigma is 7.267e-1 N: the law divides by the thrust, which must stay away from zero by 1 N; ";
+    let thrust = "sigma is 0.7267 N: the law divides by the thrust, which must stay away from zero by 1 N; ";
     let said = ended(&setup, Signal::Thrust);
     assert!(said.contains(&format!("{thrust}start elsewhere, or choose slower gains.")), "{said}");
     let said = ended(&setup, Signal::Divisor);
-    assert!(said.contains("is 7.267e-1: the law divides by it, and it must stay away from zero by 1; start"), "{said}");
+    assert!(said.contains("is 0.7267: the law divides by it, and it must stay away from zero by 1; start"), "{said}");
     setup.control = Some(control(20.0));
     let said = ended(&setup, Signal::Thrust);
     assert!(said.contains(&format!("{thrust}sample faster, start elsewhere, or choose slower gains.")), "{said}");
@@ -274,7 +274,8 @@ fn a_broken_run_says_who_and_what_and_is_written() {
     assert_eq!(sentence, expected);
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), &setup, &outcome);
-    assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(expected));
+    let on_page = expected.replace("1e-14", "1 × 10⁻¹⁴").replace("1e-12", "1 × 10⁻¹²");
+    assert!(fs::read_to_string(folder.path().join("report.html")).unwrap().contains(&on_page));
     let summary = fs::read_to_string(folder.path().join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     assert_eq!(summary["ending"]["breakdown"]["column"], "arm-2.dq.2");

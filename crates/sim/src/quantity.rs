@@ -11,6 +11,7 @@
 
 use std::fmt;
 
+use forwardstep_core::signal::superscript;
 use thiserror::Error;
 
 /// Numbers beyond this are refused, so that no product of a few of them overflows.
@@ -236,9 +237,10 @@ impl fmt::Display for QuantityError {
             }
             Requirement::Few { what, count, most } => {
                 // Two digits must not say that it is not too many.
-                let [word, count] = match about(count) {
-                    Number(rounded) if rounded > most => ["about".to_owned(), number(rounded).to_string()],
-                    Number(_) => ["more than".to_owned(), number(most).to_string()],
+                let about = about(count).typed();
+                let [word, count] = match about.value > most {
+                    true => ["about", &about.to_string()],
+                    false => ["more than", &number(most).to_string()],
                 };
                 let most = number(most);
                 write!(f, "{word} {count} {what} until the end of the run, but at most {most} are accepted")
@@ -266,27 +268,47 @@ pub fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
-/// A number as a person would write it: plain, or with a power of ten when it is very large or small.
+/// A number as a person would type it: plain, or as `1e-9` when it is very large or small.
 pub fn number(value: f64) -> Number {
-    Number(value)
+    Number { value, is_typed: true }
 }
 
-/// A number to two digits: enough to judge by.
+/// A number to two digits, enough to judge by, as it is read: plain, or as `1 × 10⁻⁹` when it is very large or small.
 pub fn about(value: f64) -> Number {
-    Number(format!("{value:.1e}").parse().unwrap_or(value))
+    Number { value: format!("{value:.1e}").parse().unwrap_or(value), is_typed: false }
 }
 
-/// See [`number`].
+/// `2.5e-4` as it is read, `2.5 × 10⁻⁴`; what has no power of ten stays as it is.
+pub fn with_power(number: &str) -> String {
+    match number.split_once('e') {
+        Some((digits, power)) => format!("{digits} × 10{}", superscript(power)),
+        None => number.to_owned(),
+    }
+}
+
+/// See [`number`] and [`about`].
 #[derive(Clone, Copy, Debug)]
-pub struct Number(f64);
+pub struct Number {
+    value: f64,
+    is_typed: bool,
+}
+
+impl Number {
+    /// As a person would type it.
+    #[must_use]
+    pub fn typed(self) -> Self {
+        Number { is_typed: true, ..self }
+    }
+}
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        if size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
-            write!(f, "{}", self.0)
-        } else {
-            write!(f, "{:e}", self.0)
+        let Number { value, is_typed } = *self;
+        let size = value.abs();
+        match size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
+            true => write!(f, "{value}"),
+            false if is_typed => write!(f, "{value:e}"),
+            false => f.write_str(&with_power(&format!("{value:e}"))),
         }
     }
 }

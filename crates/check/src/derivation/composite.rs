@@ -87,10 +87,10 @@ pub(super) fn explained(case: &Case<'_>, composite: &Composite) -> Explained {
         .system(vec![equal(composite.reduced()), notation.equation(z, 1, &composite.reference())], "");
     sections.push(cascade);
     let last = if case.outside().rubbing == Some(Rubbing::Dry) {
-        "Since s need not vanish, q_i stays away from the leader by up to the largest s that is left, behind that filter: the derivation does not \
+        "Since s need not vanish, qᵢ stays away from the leader by up to the largest s that is left, behind that filter: the derivation does not \
          cover this, and `forwardstep check` says how large s stays."
     } else {
-        "q_i − q_0 is what is left of y and s behind a stable filter, and falls to what they fall to, as its derivative does."
+        "qᵢ − q₀ is what is left of y and s behind a stable filter, and falls to what they fall to, as its derivative does."
     };
     let reached = match case.heard() {
         At::Now => "and vanishes in finite time",

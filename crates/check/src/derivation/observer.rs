@@ -88,21 +88,20 @@ pub(super) fn explained(case: &Case<'_>, observer: &Observer) -> Explained {
         .words("No derivative of s stands in the upper subsystem: the cascade is of degree 0.");
     sections.push(cascade);
     let (reached, there) = match case.heard() {
-        At::Now => (
-            "and vanishes in finite time. Then the estimates come to the leader",
-            ": q_i − q_0 → 0 with its derivative",
-        ),
+        At::Now => {
+            ("and vanishes in finite time. Then the estimates come to the leader", ": qᵢ − q₀ → 0 with its derivative")
+        }
         _ => (
             "until it is as small as the delays let it be, which `forwardstep check` says. Then the estimates come as near to the leader",
             "",
         ),
     };
     let last = if case.outside().rubbing == Some(Rubbing::Dry) {
-        "Since s need not vanish, q_i stays away from its estimate by up to the largest s that is left, divided by κ: the derivation does not cover \
+        "Since s need not vanish, qᵢ stays away from its estimate by up to the largest s that is left, divided by κ: the derivation does not cover \
          this, and `forwardstep check` says how large s stays."
             .to_owned()
     } else {
-        format!("q_i less its estimate is s behind a stable filter, and vanishes with it{there}.")
+        format!("qᵢ less its estimate is s behind a stable filter, and vanishes with it{there}.")
     };
     sections.push(Section::new(Subject::Convergence).words(words::of_s(case)).words(format!(
         "The estimates obey what (110) makes of robots without s: the largest difference of ξ̂ to the leader falls at a rate of γ less the largest \

@@ -80,11 +80,11 @@ pub(super) fn by_velocity(case: &Case<'_>, kappa: &BigRational, alpha: &BigRatio
             ),
         Section::new(Subject::ReferenceDynamics)
             .words(format!(
-                "z is no state but a function: z_r stands for Ĵ⁻¹(dx_d − αΔx) with α = {alpha}, (77) for a path that leads back to the target."
+                "z is no state but a function: zᵣ stands for Ĵ⁻¹(ẋ_d − αΔx) with α = {alpha}, (77) for a path that leads back to the target."
             ))
             .formula(notation.equation(z, 0, &dynamics.right), "")
             .words(
-                "Its derivative Ĵ⁻¹(ddx_d − αΔdx − (dĴ/dt)z) takes the measured dx in Δdx = dx − dx_d, where Theorem 6 integrates: what is wrong \
+                "Its derivative Ĵ⁻¹(ẍ_d − αΔẋ − (dĴ/dt)z) takes the measured ẋ in Δẋ = ẋ − ẋ_d, where Theorem 6 integrates: what is wrong \
                  with that measurement is in the torque at once.",
             )
             .formula(notation.equation(z, 1, &rate()), ""),
@@ -103,7 +103,7 @@ pub(super) fn by_velocity(case: &Case<'_>, kappa: &BigRational, alpha: &BigRatio
             )),
         Section::new(Subject::Convergence).words(
             "V = ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ + (κ/2)[ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] has V̇ = −sᵀK s − κ α ΔxᵀK*Δx, for as long as Ĵ stays away from singularity. \
-             So s and Δx are bounded and square-integrable; z is bounded, then dx and the derivative of s are, and both vanish.",
+             So s and Δx are bounded and square-integrable; z is bounded, then ẋ and the derivative of s are, and both vanish.",
         ),
     ];
     Explained { agents: case.agents.clone(), order: Some(1), degrees: Some([degree; 2]), sections }
@@ -124,7 +124,7 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
     let v = Formula::Rate(Box::new(Formula::bracket(notation.form(&Form::own(v)))));
     let mut sections = vec![
         Section::new(Subject::VirtualControl)
-            .words("z is what the velocity of the joints should be, and its derivative what the virtual control q̈ should be. z_r would lead the end-effector along its target if Ĵ were J.")
+            .words("z is what the velocity of the joints should be, and its derivative what the virtual control q̈ should be. zᵣ would lead the end-effector along its target if Ĵ were J.")
             .formula(Formula::equal(notation.quantity(q, 2), notation.quantity(q, 2)), "(aa3)")
             .formula(
                 Formula::equal(notation.quantity(Quantity::own(Letter::Error), 0), notation.form(&dynamics.definition_of_error())),
@@ -143,11 +143,11 @@ pub(super) fn explained(case: &Case<'_>, [kappa, alpha]: &[BigRational; 2]) -> E
             )
             .words(format!("The upper subsystem holds s with one derivative: the cascade is of degree {}.", upper.degree(1))),
         Section::new(Subject::DegreeReduction)
-            .words("q̇ − z_r − s absorbs the derivative of s; it is z − z_r.")
+            .words("q̇ − zᵣ − s absorbs the derivative of s; it is z − zᵣ.")
             .formula(Formula::equal(v, notation.form(&rate)), "after (a10)"),
         Section::new(Subject::Convergence).words(
-            "V = (κ/2)[|z − z_r|² + ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] + ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ has V̇ = −sᵀK s − κ α |z − z_r|², for as long as Ĵ stays away \
-             from singularity. So s and z − z_r are bounded and square-integrable, and vanish; then ĴᵀK*Δx does, and Δx with it.",
+            "V = (κ/2)[|z − zᵣ|² + ΔxᵀK*Δx + ΔθᵀΛ⁻¹Δθ] + ½ sᵀM s + ½ ΔϑᵀΓ⁻¹Δϑ has V̇ = −sᵀK s − κ α |z − zᵣ|², for as long as Ĵ stays away \
+             from singularity. So s and z − zᵣ are bounded and square-integrable, and vanish; then ĴᵀK*Δx does, and Δx with it.",
         ),
     ];
     let left = reduced(&upper).highest(Letter::Error).unwrap_or(0);
@@ -161,14 +161,14 @@ fn extension(case: &Case<'_>) -> Option<&'static str> {
     match agent.law.downcast::<TaskSpaceLaw>()?.tip.follows() {
         Follows::Position => None,
         Follows::RedundantPosition => Some(
-            "Not from the paper: there are more joints than coordinates, Ĵ⁻¹ stands for Ĵ⁺ = Ĵᵀ(ĴĴᵀ)⁻¹, and z_r = Ĵ⁺dx_d + (I − Ĵ⁺Ĵ)φ with \
-             φ_k = −k_n r_k/√(1 + r_k²), r = q − q_n. The proof takes of z_r only that Ĵz_r = dx_d and that it is bounded with its \
-             derivative, so V and V̇ are the same; q̇ − z_r → 0, and the free motion of the joints is that of φ.",
+            "Not from the paper: there are more joints than coordinates, Ĵ⁻¹ stands for Ĵ⁺ = Ĵᵀ(ĴĴᵀ)⁻¹, and zᵣ = Ĵ⁺ẋ_d + (I − Ĵ⁺Ĵ)φ with \
+             φₖ = −kₙ rₖ/√(1 + rₖ²), r = q − qₙ. The proof takes of zᵣ only that Ĵzᵣ = ẋ_d and that it is bounded with its \
+             derivative, so V and V̇ are the same; q̇ − zᵣ → 0, and the free motion of the joints is that of φ.",
         ),
         Follows::Pose => Some(
             "Not from the paper: x is a position and an orientation. K*Δx stands for e = (K_pΔp, k_oΔq_v), Δq the quaternion of R R_dᵀ, \
              and ½ΔxᵀK*Δx for U = ½ΔpᵀK_pΔp + 2k_o(1 − Δq_o). d/dt 2(1 − Δq_o) = Δq_vᵀ(ω − ω_d) in coordinates of the base, so the \
-             rate of U is eᵀ(Jq̇ − dx_d), dx_d = (dp_d, ω_d), and V̇ is the same. k_o is one number: with a matrix there is no U. Then e \
+             rate of U is eᵀ(Jq̇ − ẋ_d), ẋ_d = (ṗ_d, ω_d), and V̇ is the same. k_o is one number: with a matrix there is no U. Then e \
              vanishes: Δp → 0 and Δq_v → 0, which is the attitude reached for Δq_o = 1 and for Δq_o = −1.",
         ),
     }

@@ -184,7 +184,7 @@ pub(super) fn while_pushed(case: &Case<'_>) -> Option<String> {
         Step::PassivityFilter(_) => "its power Δωᵀτ_ext comes beside that",
         Step::ModelReference(_) => "what e, r and δ make of f comes beside that",
         Step::Chain(_, Backstepping, _) => {
-            "Σ e_k v_k comes beside that, where v_k is what acts on the k-th equation less what the virtual control α_(k−1) makes of what acts on \
+            "Σ eₖ vₖ comes beside that, where vₖ is what acts on the k-th equation less what the virtual control α_(k−1) makes of what acts on \
              those before"
         }
         Step::Chain(..) => "the power s w comes beside that",
@@ -232,7 +232,7 @@ fn chain(kind: super::case::ChainStepKind) -> String {
              s → 0."
         }
         Backstepping => {
-            "V = ½ Σ e_i² + ½ ΔθᵀΓ⁻¹Δθ with e₁ = s loses Σ c_i e_i², whatever z does. So s is bounded and square-integrable, and θ̂ is \
+            "V = ½ Σ eᵢ² + ½ ΔθᵀΓ⁻¹Δθ with e₁ = s loses Σ cᵢ eᵢ², whatever z does. So s is bounded and square-integrable, and θ̂ is \
              bounded."
         }
     }
@@ -279,20 +279,20 @@ pub(super) fn of_all(case: &Case<'_>, left: usize, input: Letter) -> String {
         Led::Consensus(_) | Led::PureIntegral(_) => format!(
             "With {s} = 0, each ψ moves towards an average of what is its own and what is heard, whatever the bounded delays are; as long as the \
              graph is connected as the theorem asks, all ψ come together. {bounded}, and what is left is the undisturbed system: \
-             {q}_i − {q}_j → 0, and all derivatives of {q}_i vanish."
+             {q}ᵢ − {q}ⱼ → 0, and all derivatives of {q}ᵢ vanish."
         ),
         Led::Leader(FollowingDesign::Swarm { .. }, _) => format!(
             "With {s} = 0, the differences to the leader fall as long as the coupling and γ are as large as `forwardstep check` asks. {bounded}, and \
-             {q}_i − {q}_0 → 0 with its derivative."
+             {q}ᵢ − {q}₀ → 0 with its derivative."
         ),
         Led::Leader(..) if case.heard() != At::Now => format!(
             "With {s} = 0, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, until it is as \
-             small as the delays let it be: what the leader does meanwhile has not been heard yet. {bounded}, and {q}_i − {q}_0 stays within what \
+             small as the delays let it be: what the leader does meanwhile has not been heard yet. {bounded}, and {q}ᵢ − {q}₀ stays within what \
              `forwardstep check` says."
         ),
         Led::Leader(..) => format!(
             "With {s} = 0, the largest difference to the leader falls at a rate of γ less the largest size of what drives the leader, and \
-             vanishes in finite time. {bounded}, and {q}_i − {q}_0 → 0 with its derivative."
+             vanishes in finite time. {bounded}, and {q}ᵢ − {q}₀ → 0 with its derivative."
         ),
         Led::Target => format!(
             "With {s} = 0, what is left is a linear system with the given roots, which is exponentially stable. {bounded}, and so does the distance \

@@ -44,7 +44,7 @@ impl KindCheck for Chain {
         } else {
             Claim {
                 theorem: Theorem::ChainsAgree(steps),
-                promises: "all agents agree and come to rest, whatever their orders: x_i − x_j → 0 and dx_i → 0".into(),
+                promises: "all agents agree and come to rest, whatever their orders: xᵢ − xⱼ → 0 and ẋᵢ → 0".into(),
             }
         })
     }
@@ -190,6 +190,7 @@ fn input_factor(setup: &Setup, agents: &[usize]) -> Hypothesis {
             everywhere @ (FactorEverywhere::Away { .. }
             | FactorEverywhere::Fades
             | FactorEverywhere::Zero(_)
+            | FactorEverywhere::Slopes
             | FactorEverywhere::Unknown) => {
                 let agent = Named::of(setup, index);
                 let evidence = KindEvidence::FactorFloor { agent, floor, everywhere, matrix };
@@ -264,7 +265,7 @@ fn everywhere(factor: Factor<'_>) -> FactorEverywhere {
             let least = matrix_factor::least_everywhere(input);
             return if least > 0.0 { FactorEverywhere::Away { least } } else { FactorEverywhere::Unknown };
         }
-        Factor::More(_) => return FactorEverywhere::Unknown,
+        Factor::More(_) => return FactorEverywhere::Slopes,
     };
     let (within, nonzero) = input.everywhere();
     let least = within.low.max(-within.high);

@@ -28,7 +28,7 @@ impl KindCheck for LagrangianRobot {
     fn claim(&self, setup: &Setup) -> Option<Claim> {
         setup.all_track().then(|| Claim {
             theorem: Theorem::RobotsTrack,
-            promises: "every robot reaches its target: q − q_d → 0 and dq − dq_d → 0".into(),
+            promises: "every robot reaches its target: q − q_d → 0 and q̇ − q̇_d → 0".into(),
         })
     }
 

@@ -26,7 +26,7 @@ impl KindCheck for ModelledMass {
     fn claim(&self, _: &Setup) -> Option<Claim> {
         Some(Claim {
             theorem: Theorem::ModelReference,
-            promises: "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
+            promises: "x − x_d → 0 and ẋ − ẋ_d → 0 without a measured velocity".into(),
         })
     }
 

@@ -27,12 +27,12 @@ impl KindCheck for PositionOnlyMass {
         Some(if setup.all_track() {
             Claim {
                 theorem: Theorem::PositionOnlyTracks,
-                promises: "x − x_d → 0 and dx − dx_d → 0 without a measured velocity".into(),
+                promises: "x − x_d → 0 and ẋ − ẋ_d → 0 without a measured velocity".into(),
             }
         } else {
             Claim {
                 theorem: Theorem::PositionOnlyAgree { order: setup.agents.first()?.roots_per_s.len() },
-                promises: "all agents agree and come to rest without a measured velocity: x_i − x_j → 0 and dx_i → 0"
+                promises: "all agents agree and come to rest without a measured velocity: xᵢ − xⱼ → 0 and ẋᵢ → 0"
                     .into(),
             }
         })

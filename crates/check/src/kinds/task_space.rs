@@ -37,14 +37,14 @@ impl KindCheck for TaskSpaceRobot {
         let (theorem, promises) = if laws().any(|law| law.by_velocity) {
             let beside =
                 if laws().all(|law| law.by_velocity) { "" } else { "; of the others without it, as of Theorem 6" };
-            let promises = "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, by a measured dx";
+            let promises = "x − x_d → 0 and ẋ − ẋ_d → 0 with uncertain lengths and parameters, by a measured ẋ";
             (Theorem::TipVelocity, format!("{promises}{beside}"))
         } else if some(Follows::RedundantPosition) {
             let more = if some(Follows::Pose) { "; of poses Δp → 0 and Δq_v → 0" } else { "" };
             (
                 Theorem::Theorem6Redundant,
                 format!(
-                    "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx, and dq − z_r → 0: \
+                    "x − x_d → 0 and ẋ − ẋ_d → 0 with uncertain lengths and parameters, without a measured ẋ, and q̇ − zᵣ → 0: \
                      joints beyond the coordinates move as the null-space term says{more}"
                 ),
             )
@@ -53,7 +53,7 @@ impl KindCheck for TaskSpaceRobot {
                             and parameters, without a measured velocity of the end-effector";
             (Theorem::Theorem6Pose, promises.into())
         } else {
-            let promises = "x − x_d → 0 and dx − dx_d → 0 with uncertain lengths and parameters, without a measured dx";
+            let promises = "x − x_d → 0 and ẋ − ẋ_d → 0 with uncertain lengths and parameters, without a measured ẋ";
             (Theorem::Theorem6, promises.into())
         };
         Some(Claim { theorem, promises })

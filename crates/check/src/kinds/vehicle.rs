@@ -72,9 +72,9 @@ pub(super) fn claim(setup: &Setup) -> Option<Claim> {
         ThrustKind::ByAcceleration { .. } => (Theorem::ThrustByAcceleration, JUMPS),
     };
     let agreed = if setup.agents.iter().any(|agent| agent.target.is_some()) {
-        "with y = x − offset all vehicles agree on y, and it comes to rest: y_i − y_j → 0 and dy_i → 0"
+        "with y = x − offset all vehicles agree on y, and it comes to rest: yᵢ − yⱼ → 0 and ẏᵢ → 0"
     } else {
-        "all vehicles agree and come to rest: x_i − x_j → 0 and dx_i → 0"
+        "all vehicles agree and come to rest: xᵢ − xⱼ → 0 and ẋᵢ → 0"
     };
     Some(Claim { theorem, promises: format!("{agreed}; {smooth}") })
 }

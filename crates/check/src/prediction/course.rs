@@ -16,7 +16,7 @@ use crate::surroundings::acts;
 
 use super::cascade::{CascadeSpread, NoCascade};
 use super::ideal::{NoIdeal, behind_leader, ideal, start_error, told_before};
-use super::settled::{Settled, settled};
+use super::settled::{Settled, only_passes, settled};
 use super::torque::{PeakTorque, peak_torques, relative_error};
 use super::unfinished::{Unfinished, completed, simulated};
 
@@ -136,10 +136,12 @@ pub enum NoCourse {
 }
 
 impl Course {
-    /// Whether agreement is reached on the horizon: the last disagreement is at most 1 % of the largest.
+    /// Whether agreement is reached on the horizon: the last disagreement is at most 1 % of the largest, and not only in passing.
     pub fn is_reached(&self) -> bool {
         let largest = self.disagreement.iter().copied().fold(0.0, f64::max);
-        self.disagreement.last().is_some_and(|last| *last <= super::settled::SHARE * largest)
+        let bound = super::settled::SHARE * largest;
+        let is_near = self.disagreement.last().is_some_and(|last| *last <= bound);
+        is_near && !only_passes(&self.t_s, &self.disagreement, bound)
     }
 }
 

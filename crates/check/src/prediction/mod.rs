@@ -34,7 +34,7 @@ pub(crate) use ideal::{family_start, order};
 pub use period::{NoPeriodRate, PeriodRate, period_rate, period_rate_within};
 pub(crate) use repeats::Repeats;
 pub use roots::{NoRate, Rate, rate};
-pub use settled::{SHARE, Settled, settled};
+pub use settled::{SHARE, Settled, only_passes, settled};
 pub use torque::PeakTorque;
 pub use unfinished::Unfinished;
 pub(crate) use unfinished::trial;

@@ -7,6 +7,7 @@ use forwardstep_sim::{
 };
 use thiserror::Error;
 
+use crate::instance::{Design, design};
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
@@ -111,12 +112,15 @@ pub(super) fn covered(
 /// outside, nothing is promised.
 fn continuous(setup: &Setup, agent: usize, signal: Signal) -> Option<usize> {
     let own = &setup.agents[agent];
-    let order = own.roots_per_s.len();
-    if setup.reference.is::<PureIntegral>() {
+    // Desired dynamics may be a design of the paper.
+    let written = design(setup);
+    let is = |found: Design| written.as_ref().is_some_and(|(design, _)| *design == found);
+    let order = written.as_ref().map_or(own.roots_per_s.len(), |(_, roots)| roots.len());
+    if setup.reference.is::<PureIntegral>() || is(Design::PureIntegral) {
         let fixed = setup.network.schedule.constant_graph().is_some();
         return (fixed && is_lagrangian(own)).then_some(1);
     }
-    if !setup.reference.is::<Consensus>() {
+    if !setup.reference.is::<Consensus>() && !is(Design::Consensus) {
         None
     } else if is_lagrangian(own) || own.law.is::<PositionOnlyLaw>() {
         Some(order.saturating_sub(1))

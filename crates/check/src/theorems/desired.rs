@@ -10,7 +10,7 @@
 
 use forwardstep_core::reference::WrittenIn;
 use forwardstep_sim::Setup;
-use forwardstep_sim::reference::{Desired, Protocol};
+use forwardstep_sim::reference::{Desired, DesiredPolynomial, Protocol};
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
@@ -66,7 +66,10 @@ fn nonlinear(setup: &Setup, protocol: &Protocol) -> Vec<Hypothesis> {
 /// Why nothing is known of a 𝒵 in which agents hear each other.
 fn unknown(setup: &Setup, desired: &Desired) -> ReferenceEvidence {
     match desired.written {
-        WrittenIn::Measured => ReferenceEvidence::NoDesign { steady: fixed(&setup.network).is_ok() },
+        WrittenIn::Measured => ReferenceEvidence::NoDesign {
+            steady: fixed(&setup.network).is_ok(),
+            by_roots: matches!(desired.polynomial, DesiredPolynomial::Roots { .. }),
+        },
         WrittenIn::Z | WrittenIn::X => ReferenceEvidence::NoDesignInThese,
     }
 }

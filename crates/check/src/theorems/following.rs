@@ -101,13 +101,13 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     hypotheses.push(shared_design(setup, following));
     let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
     let promises = match over {
-        Over::Fixed | Over::Turns => format!("everybody follows {leader}: q_i − q_0 → 0 and dq_i − dq_0 → 0; {torque}"),
+        Over::Fixed | Over::Turns => format!("everybody follows {leader}: qᵢ − q₀ → 0 and q̇ᵢ − q̇₀ → 0; {torque}"),
         Over::Late => {
             let near = match behind(setup, following) {
                 Some(bound) => {
-                    format!("in the end no |q_i − q_0| exceeds {}", rounded_up(bound * swing(following)))
+                    format!("in the end no |qᵢ − q₀| exceeds {}", rounded_up(bound * swing(following)))
                 }
-                None => "in the end |q_i − q_0| keeps within a bound in proportion to them and to sup|ξ̇_0|".to_owned(),
+                None => "in the end |qᵢ − q₀| keeps within a bound in proportion to them and to sup|ξ̇₀|".to_owned(),
             };
             format!("everybody follows {leader} as closely as the delays let it: {near}; {torque}")
         }

@@ -103,7 +103,7 @@ fn agreement(setup: &Setup, order: usize) -> String {
         }
     };
     let agents = if setup.agents.len() == 1 { "the agent comes to rest" } else { "all agents agree and come to rest" };
-    format!("{agents}: q_i − q_j → 0 and dq_i → 0; {smooth}")
+    format!("{agents}: qᵢ − qⱼ → 0 and q̇ᵢ → 0; {smooth}")
 }
 
 /// The lowest and the highest order of the reference dynamics.

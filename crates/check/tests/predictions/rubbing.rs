@@ -258,7 +258,7 @@ fn why_a_loop_converges_says_what_friction_and_pushes_bring_into_v() {
     let smooth = words(&arms(PLANAR, 2, None, 0.0));
     assert!(smooth.contains("V̇ = −sᵀ(K + D)s − sᵀF[tanh(ε⁻¹q̇) − tanh(ε⁻¹z)] ≤ −sᵀ(K + D)s"), "{smooth}");
     assert!(smooth.contains("tanh rises") && smooth.contains("s is bounded and square-integrable"), "{smooth}");
-    assert!(smooth.contains("q_i − q_j → 0") && !smooth.contains("τ_ext"), "{smooth}");
+    assert!(smooth.contains("qᵢ − qⱼ → 0") && !smooth.contains("τ_ext"), "{smooth}");
     let mut setup = arms(PLANAR, 2, Some(1e-3), 0.0);
     let dry = words(&setup);
     assert!(dry.contains("V̇ ≤ −sᵀ(K + D)s + 0.2785 Σ ε F") && dry.contains("need not vanish"), "{dry}");

@@ -26,6 +26,13 @@ struct NoSuchAgent {
     known: String,
 }
 
+/// The push would outlast the run.
+#[derive(Debug, Error)]
+#[error("the push lasts {PUSH_S} s, and the run {end_s} s: let `time.end_s` be longer")]
+struct ShortRun {
+    end_s: f64,
+}
+
 /// Pushes scenarios at rest with several λ, and sets what happened beside the theory.
 pub(crate) fn manipulability(
     options: &ManipulabilityOptions,
@@ -40,6 +47,10 @@ pub(crate) fn manipulability(
     for name in &options.scenarios {
         let scenario = kinds.open_scenario(name).map_err(|error| complain(&error))?;
         let trial = trial(options, &scenario.setup)?;
+        let end_s = scenario.setup.time.end_s;
+        if end_s <= PUSH_S {
+            return Err(complain(&Plain::new(ShortRun { end_s })));
+        }
         for (k, lambda) in options.lambda.iter().enumerate() {
             let mut setup = scenario.setup.clone();
             setup.agents.iter_mut().for_each(|agent| agent.manipulability = *lambda);
@@ -53,7 +64,15 @@ pub(crate) fn manipulability(
             if let Some(status) = stop.asked() {
                 return Err(status);
             }
-            let found = found.map_err(|error| refuse(&setup, &error))?;
+            let found = match found {
+                Ok(found) => found,
+                Err(error) if k == 0 || options.table => return Err(refuse(&setup, &error)),
+                // Not every law has λ; without it something has been said already.
+                Err(error) => {
+                    console.line(format_args!("  λ = {lambda}: nothing, since {}", names::reason(&setup, &error)));
+                    break;
+                }
+            };
             let words = Words::of(*lambda, theory, found);
             if options.table {
                 let adapts = setup.agents[trial.agent].law.is::<Adaptive>();

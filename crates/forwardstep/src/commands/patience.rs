@@ -29,4 +29,4 @@ impl Patience {
 }
 
 /// What is said while a scenario is read and looked at.
-pub(crate) const LOOKING: &str = "still checking: robots with many joints, or many agents, take a while";
+pub(crate) const LOOKING: &str = "still checking: predictions, or many joints or agents, take a while";

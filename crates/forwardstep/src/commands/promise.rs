@@ -76,6 +76,9 @@ pub(crate) fn predicts_quickly(setup: &Setup) -> bool {
 
 /// What is predicted, in a few lines.
 pub(crate) fn show_predictions(setup: &Setup, predictions: &Predictions, console: &mut Console) {
+    if predictions.is_of_one_alone(setup) {
+        return;
+    }
     console.line(format_args!("{BOLD}Predicted{BOLD:#} for robots that follow their references exactly, s ≡ 0:"));
     for sentence in predictions.sentences(setup) {
         console.line(format_args!("  {sentence}"));

@@ -1,6 +1,6 @@
 //! `forwardstep sampling-limit`
 
-use forwardstep::io::output::{Accepted, Deployment, Measuring, Rule, SamplingLimit, Trial};
+use forwardstep::io::output::{Accepted, Deployment, LimitRemark, Measuring, Rule, SamplingLimit, Trial};
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::sim::{SetupError, VelocitySensor};
@@ -121,9 +121,14 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
     });
     let accepted = format!("{}at most {:.2e} remains at the end", bounded(found.peak_error, ", and "), found.remains);
     let runs = found.trials.len();
-    console.line(match found.measured_s {
-        Some(measured_s) => format!("  measured   {} ms: {accepted}; {runs} runs", to_digits(1e3 * measured_s, 4)),
-        None => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs} runs"),
+    let least = if found.remark == Some(LimitRemark::LongestTried) { "at least " } else { "" };
+    let remark = found.remark.map_or_else(String::new, |remark| format!("; {}", remark.words()));
+    console.line(match (found.measured_s, found.remark) {
+        (Some(measured_s), _) => {
+            format!("  measured   {least}{} ms: {accepted}; {runs} runs{remark}", to_digits(1e3 * measured_s, 4))
+        }
+        (None, None) => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs} runs"),
+        (None, Some(remark)) => format!("  measured   – ms: {}", remark.words()),
     });
 }
 
@@ -156,7 +161,8 @@ fn row(scenario: &Scenario, deployment: Deployment, found: &SamplingLimit) -> St
     let ratio =
         rule_s.zip(found.measured_s).map_or_else(|| "–".into(), |(rule, measured)| format!("{:.2}", rule / measured));
     let name = &scenario.name;
-    format!("| {name} | {late} | {velocity} | {} | {} | {ratio} |", ms(rule_s), ms(found.measured_s))
+    let least = if found.remark == Some(LimitRemark::LongestTried) { "≥ " } else { "" };
+    format!("| {name} | {late} | {velocity} | {} | {least}{} | {ratio} |", ms(rule_s), ms(found.measured_s))
 }
 
 /// Milliseconds to three digits.

@@ -8,8 +8,10 @@ use forwardstep::check::{Injection, Report};
 use forwardstep::io::output::names::{agent_name, gap_unit, limits_by_itself, torque_words, unit};
 use forwardstep::io::output::{
     Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Metrics, RunRecord, WatchedMargin,
+    coarse_rows,
 };
-use forwardstep::io::shown;
+use forwardstep::io::{instant, shown};
+use forwardstep::sim::quantity::with_power;
 use forwardstep::sim::reference::Backstepping;
 use forwardstep::sim::{ClippedSamples, Drive, Setup, Signal};
 
@@ -20,9 +22,9 @@ use super::promise::list;
 fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String {
     let until = match exceeds_until_s {
         None => format!("below γ = {gamma} all the time"),
-        Some(until_s) => format!("γ = {gamma} or more until {until_s:.2} s"),
+        Some(until_s) => format!("γ = {gamma} or more until {} s", instant(until_s)),
     };
-    format!("driven by {} at most, at {peak_s:.2} s; {until}", short(peak))
+    format!("driven by {} at most, at {} s; {until}", short(peak), instant(peak_s))
 }
 
 /// A few lines: what was promised, what happened, what it cost, and where it is.
@@ -46,10 +48,10 @@ pub(crate) fn summary(
     }
     rows.push((final_gap(setup), disagreement(setup, metrics)));
     if let Some(settled_s) = metrics.settled_s {
-        rows.push(("settled after", format!("{settled_s:.2} s")));
+        rows.push(("settled after", format!("{} s", instant(settled_s))));
     }
     if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.course()) {
-        let time = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{t_s:.2} s"));
+        let time = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{} s", instant(t_s)));
         let (predicted, observed) = (time(course.settled_s), time(metrics.settled_to_1_percent_s));
         // Who was never apart has nothing to settle.
         if metrics.disagreement.initial() != Some(0.0) {
@@ -68,7 +70,7 @@ pub(crate) fn summary(
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
         let (agent, axis) = (agent_name(setup, peak.agent), torque_words(setup, peak.agent, peak.axis));
         let value = with_unit(peak.value.abs(), &unit);
-        rows.push(("peak torque", format!("{value}, {agent}, {axis} at {:.2} s", peak.t_s)));
+        rows.push(("peak torque", format!("{value}, {agent}, {axis} at {} s", instant(peak.t_s))));
     }
     if !metrics.limits_reached.is_empty() {
         rows.push((limits_words(&metrics.limits_reached), format!("{}, see the report", metrics.limits_reached.len())));
@@ -78,7 +80,7 @@ pub(crate) fn summary(
         let unit = unit(setup, gap.agent, Signal::Position, gap.axis);
         let agent = agent_name(setup, gap.agent);
         let value = with_unit(gap.value.abs(), &unit);
-        let gap = format!("{value} from the continuous run ({agent} at {:.2} s)", gap.t_s);
+        let gap = format!("{value} from the continuous run ({agent} at {} s)", instant(gap.t_s));
         rows.push(("cost of going digital", gap));
     }
     rows.extend(injected(setup, &record.injected));
@@ -88,6 +90,7 @@ pub(crate) fn summary(
     }
     let steps = format!("{}, {} of them to break-points", statistics.steps, statistics.break_points);
     rows.push(("steps", format!("{steps}; {} rejected", statistics.rejected)));
+    rows.extend(coarse_rows(setup, outcome).map(|words| ("rows", words)));
     if let Some(wall_s) = statistics.wall.map(|wall| wall.as_secs_f64()) {
         let factor = metrics.last_t_s.unwrap_or(0.0) / wall_s.max(1e-9);
         let twin = compared.map(|wall| format!(", and {:.2} s for the same in continuous time", wall.as_secs_f64()));
@@ -114,7 +117,7 @@ fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) ->
     let mut rows = Vec::new();
     if let Some(WatchedMargin { agent, t_s, sigma }) = metrics.watched.and_then(|watched| watched.sampling_margin) {
         let agent = agent_name(setup, agent);
-        rows.push(("sampling margin", format!("σ = {} at most, {agent} at {t_s:.2} s", short(sigma))));
+        rows.push(("sampling margin", format!("σ = {} at most, {agent} at {} s", short(sigma), instant(t_s))));
     }
     if let Some(ClippedSamples { samples, torque, rate }) = clipped {
         let words = if torque + rate == 0 && limits_by_itself(setup) {
@@ -157,7 +160,7 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
     let first = match Injected::earliest(all) {
         None => "nothing that put in 1 % of V".to_owned(),
         Some((own, FirstInjection { cause, t_s })) => {
-            format!("first {}, {} at {t_s:.2} s", named(cause), agent_name(setup, own.agent))
+            format!("first {}, {} at {} s", named(cause), agent_name(setup, own.agent), instant(*t_s))
         }
     };
     // V of chains is in a unit of its own.
@@ -179,7 +182,7 @@ fn short(value: f64) -> String {
         let places = (2.0 - size.log10().floor()).max(0.0) as usize;
         format!("{value:.places$}")
     } else {
-        format!("{value:.2e}")
+        with_power(&format!("{value:.2e}"))
     }
 }
 
@@ -232,7 +235,7 @@ mod tests {
     #[test]
     fn numbers_of_any_size_stay_short() {
         let values = [0.0, 66.8123, 0.4, 3600.0, 0.0123456, 2.59e-4, 6.69e169, f64::NAN, f64::INFINITY];
-        let expected = ["0", "66.8", "0.400", "3600", "0.0123", "2.59e-4", "6.69e169", "NaN", "inf"];
+        let expected = ["0", "66.8", "0.400", "3600", "0.0123", "2.59 × 10⁻⁴", "6.69 × 10¹⁶⁹", "NaN", "inf"];
         assert_eq!(values.map(short), expected);
     }
 }

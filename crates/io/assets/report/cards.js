@@ -196,7 +196,7 @@ const cards = {
     build: ([who, what]) => ({ grid: "estimates", unit: index.energy && "SI units", series: who == null || what == null ? [] : estimateSeries(who, what), key: who !== "all" }),
   },
   balance: {
-    picks: [{ id: "balance", name: "what is drawn", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]] }],
+    picks: [{ id: "balance", name: "what is drawn", options: [["v", "V"], ["sum", "V + ∫ dissipation"], ["error", "error"]].filter(([id]) => balances[id].columns.some((k) => k != null)) }],
     build: ([which]) => {
       const { columns, unit, said } = balances[which];
       // V often falls by little, since it need not vanish: a logarithmic axis is for what spans decades.
@@ -262,6 +262,14 @@ for (const { id, entries } of index.families) {
 }
 
 const notDrawn = index.gantt.drawn_until_s === null ? "" : `not drawn after ${number(index.gantt.drawn_until_s)} s`;
+
+// The same as rows: who hears whom, from when to when.
+const ganttRows = () => {
+  const { rows, bars, by_receiver } = index.gantt;
+  const all = bars.map(([start, end, row, edges]) => [rows[row][0], start, end, ...(by_receiver ? [edges] : [])]);
+  const head = [by_receiver ? "receiver" : "edge", "from, in s", "to, in s", ...(by_receiver ? ["agents heard"] : [])];
+  return { head, all, said: `${rows.length === 1 ? "1 row" : `${rows.length} rows`}${notDrawn && `, ${notDrawn}`}` };
+};
 
 // The Gantt strip is drawn by hand on an empty plot, so that it zooms with the others.
 const ganttCard = () => {

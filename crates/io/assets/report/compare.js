@@ -25,6 +25,24 @@ const runColour = (run) => colour(`--run${run.k}`);
 
 // Plots: all times of all runs, and each run on straight lines between its own.
 const cardsPlace = document.getElementById("cards");
+// Disagreement of one run and errors of another are both what is to vanish.
+const vanishing = ["gap", "gap-to-targets"];
+const isMixed = vanishing.every((id) => runs.some((run) => run.quantities.some((q) => q.id === id)));
+if (isMixed) {
+  for (const { quantities } of runs) {
+    const place = quantities.findIndex((q) => vanishing.includes(q.id));
+    if (place < 0) continue;
+    const { title, entries } = quantities[place];
+    const [largest] = entries;
+    quantities.splice(place, 0, { id: "vanishes", title: "What is to vanish: disagreement or error", log: true, entries: [{ ...largest, word: title.toLowerCase() }] });
+  }
+}
+// Positions of one name may be of different units: they are not one quantity.
+const placed = runs.flatMap((run) => run.quantities.filter(({ id }) => id === "position").flatMap(({ entries }) => entries));
+for (const name of new Set(placed.map((entry) => entry.name))) {
+  const alike = placed.filter((entry) => entry.name === name);
+  if (new Set(alike.map(({ unit }) => unit)).size > 1) for (const entry of alike) entry.name = `${name}, ${entry.unit || "no unit"}`;
+}
 const quantityIds = [...new Set(runs.flatMap((run) => run.quantities.map((q) => q.id)))];
 const having = (id) => runs.flatMap((run) => run.quantities.filter((q) => q.id === id).map((quantity) => ({ run, quantity })));
 const timesOf = (list) => Float64Array.from(new Set(list.flatMap((run) => run.data.t("main")))).sort();
@@ -42,17 +60,33 @@ const valuesOf = (run, k, log) => {
   }
   return sampled.get(key);
 };
+// The same at rows that were recorded, of whichever run, and between those of each.
+const recordedOf = (run, k, times) => {
+  const own = run.data.picked("main", run.data.t("main"));
+  const values = run.data.picked("main", run.data.values("main", k));
+  return times.map((t) => {
+    if (t > run.until_s) return null;
+    const { row, part } = placeIn(own, t);
+    const [a, b] = [values[row], values[row + (part > 0 ? 1 : 0)]];
+    return a === null || b === null ? null : a + part * (b - a);
+  });
+};
 const LINES = { run: { width: 1.8 }, predicted: { width: 1.2, dash: [6, 4] }, band: { width: 0.9, dash: [2, 3] } };
 const SUFFIX = { run: "", predicted: ", predicted" };
 // The least and the greatest of all agents come in this order.
 const ENDS = [", least", ", greatest"];
 
+// What is not drawn here, and whose it is.
+const alone = [];
 const sideCards = quantityIds.flatMap((id) => {
   const all = having(id);
   // What one run alone has cannot be compared.
   const names = [...new Set(all.flatMap(({ quantity }) => quantity.entries.map((e) => e.name)))];
   const common = names.filter((name) => all.filter(({ quantity }) => quantity.entries.some((e) => e.name === name)).length > 1);
-  if (common.length === 0) return [];
+  if (common.length === 0) {
+    if (!isMixed || !vanishing.includes(id)) alone.push(`${all[0].quantity.title} (${all.map(({ run }) => run.name).join(", ")})`);
+    return [];
+  }
   const card = element("article", { className: "card plot" });
   card.dataset.plot = id;
   const unit = element("span", { className: "unit" });
@@ -62,6 +96,8 @@ const sideCards = quantityIds.flatMap((id) => {
   cardsPlace.append(card);
   return [{ id, all, common, card, unit, pick, picked, canvas, chosen: common[0], log: all[0].quantity.log, plot: null }];
 });
+
+if (alone.length) cardsPlace.after(element("p", { className: "note", id: "alone", textContent: `On the pages of the runs alone, since no two of them have it under one name and in one unit: ${alone.join("; ")}.` }));
 
 const fillCard = (mine) => {
   if (mine.plot) removePlot(mine.plot);
@@ -88,7 +124,8 @@ const fillCard = (mine) => {
   mine.series = found.flatMap(({ run, entry: e }) => {
     const bands = e.lines.filter(({ style }) => style === "band");
     const suffix = (line) => SUFFIX[line.style] ?? ENDS[bands.indexOf(line)] ?? "";
-    return e.lines.map((line) => ({ ...LINES[line.style], run, label: run.name + suffix(line), unit: e.unit, colour: runColour(run), show: run.shown, values: valuesOf(run, line.series, mine.log) }));
+    const name = e.word ? `${run.name}, ${e.word}` : run.name;
+    return e.lines.map((line) => ({ ...LINES[line.style], run, k: line.series, label: name + suffix(line), unit: e.unit, colour: runColour(run), show: run.shown, values: valuesOf(run, line.series, mine.log) }));
   });
   if (mine.series.every((s) => s.values.every((v) => v === null))) {
     mine.canvas.append(element("p", { className: "none", textContent: "no value can be drawn: all are zero or not finite" }));
@@ -96,6 +133,10 @@ const fillCard = (mine) => {
   }
   const far = mine.log ? null : outliers(mine.series);
   mine.plot = drawPlot(mine.canvas, { times: allTimes, series: mine.series, log: mine.log, within: far?.usual, unit: units.length === 1 ? units[0] : "" });
+  mine.plot.recorded = () => {
+    const times = Array.from(new Set(mine.series.flatMap(({ run }) => run.data.picked("main", run.data.t("main"))))).sort((a, b) => a - b);
+    return [times, ...mine.series.map(({ run, k }) => recordedOf(run, k, times))];
+  };
   const note = (textContent) => mine.canvas.append(element("p", { className: "note", textContent }));
   if (far) note(`Some values leave this axis; the largest is ${number(far.largest)}.`);
   const lost = found.flatMap(({ run, entry: e }) => e.lines.map(({ series }) => ({ run, t: run.data.beyond("main", series) }))).filter(({ t }) => t !== null);

@@ -27,6 +27,15 @@ const dataOf = (index, block) => {
     delays: { t: times.subarray(g.main + g.estimates, g.main + g.estimates + g.delays), start: delayStart, origins: {} },
     scene: { t: times.subarray(g.main + g.estimates + g.delays), start: delayStart + g.delays * g.delay_series, origins: g.origins.scene },
   };
+  // Rows as they were recorded; null where all points are. The others stand where they do so that curves look as they are.
+  const recorded = { main: g.rows.main, estimates: g.rows.estimates };
+  for (const [grid, bits] of Object.entries(recorded)) {
+    if (bits === null) continue;
+    const eights = atob(bits);
+    recorded[grid] = [...grids[grid].t.keys()].filter((i) => (eights.charCodeAt(i >> 3) >> (i & 7)) & 1);
+  }
+  const rowsOf = (grid) => recorded[grid] ?? null;
+  const picked = (grid, list) => (rowsOf(grid) ? rowsOf(grid).map((i) => list[i]) : list);
   // Series that stay far from zero are stored less where they are: single precision has seven digits.
   const originOf = (grid, k) => grids[grid].origins[k] ?? 0;
   // A gap where a number is missing, or cannot stand on a logarithmic axis.
@@ -50,20 +59,20 @@ const dataOf = (index, block) => {
     const here = numbers[start + k * t.length + row];
     return originOf(grid, k) + (part === 0 ? here : here + part * (numbers[start + k * t.length + row + 1] - here));
   };
-  // The row before a time, and how far it is to the next.
-  const place = (grid, time) => {
-    const { t } = grids[grid];
-    let [low, high] = [0, t.length - 1];
-    if (high <= 0 || time <= t[0]) return { row: 0, part: 0 };
-    if (time >= t[high]) return { row: high, part: 0 };
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if (t[middle] <= time) low = middle;
-      else high = middle;
-    }
-    return { row: low, part: t[high] > t[low] ? (time - t[low]) / (t[high] - t[low]) : 0 };
-  };
-  return { beyond, t: (grid) => Array.from(grids[grid].t), values, at, place };
+  const place = (grid, time) => placeIn(grids[grid].t, time);
+  return { beyond, t: (grid) => Array.from(grids[grid].t), values, at, place, picked };
+};
+// The row before a time, and how far it is to the next.
+const placeIn = (t, time) => {
+  let [low, high] = [0, t.length - 1];
+  if (high <= 0 || time <= t[0]) return { row: 0, part: 0 };
+  if (time >= t[high]) return { row: high, part: 0 };
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (t[middle] <= time) low = middle;
+    else high = middle;
+  }
+  return { row: low, part: t[high] > t[low] ? (time - t[low]) / (t[high] - t[low]) : 0 };
 };
 // A page of several runs has a block for each.
 const data = index.runs ? null : dataOf(index, document.getElementById("block").textContent);

@@ -18,6 +18,9 @@ const fitSheet = (on) => {
 };
 const shownSeries = (plot) => plot.series.map((s, k) => ({ s, k })).filter(({ s, k }) => k > 0 && s.show && s.label);
 
+// Rows of a plot as they were recorded, where not all of its points are.
+const recordedIn = (plot) => plot.recorded?.() ?? plot.data;
+
 // A single-precision number in as few digits as tell it from all others.
 const single = (v) => {
   if (v == null) return "";
@@ -30,28 +33,36 @@ const single = (v) => {
 const cell = (text) => `"${String(text).replace(/^[=+\-@\t\r]/, "'$&").replaceAll('"', '""')}"`;
 const withUnit = (plot, { label, unit = plot.unit }) => (unit ? `${label} in ${unit}` : label);
 const csvOf = (plot) => {
+  if (plot.rows) return [plot.rows.head.map(cell), ...plot.rows.all.map((row) => row.map((v) => (typeof v === "number" ? v : cell(v)))), []].map((row) => row.join(",")).join("\n");
   const series = shownSeries(plot);
   // Times may be a typed array, whose own map() would make numbers of the lines.
-  const rows = Array.from(plot.data[0], (t, i) => [t, ...series.map(({ k }) => single(plot.data[k][i]))].join(","));
+  const own = recordedIn(plot);
+  const rows = Array.from(own[0], (t, i) => [t, ...series.map(({ k }) => single(own[k][i]))].join(","));
   return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, s)))].join(","), ...rows, ""].join("\n");
 };
 
 const TABLE_ROWS = 13;
 const TABLE_SERIES = 12;
+const TABLE_LINES = 60;
+const tableWith = (head, rows, more) => {
+  const line = (tag, texts) => element("tr", {}, ...texts.map((textContent) => element(tag, { textContent })));
+  const table = element("table", { className: "numbers" }, element("thead", {}, line("th", head)), element("tbody", {}, ...rows.map((row) => line("td", row))));
+  return [table, ...(more ? [element("p", { className: "note", textContent: more })] : [])];
+};
 const tableOf = (plot) => {
+  if (plot.rows) {
+    const { head, all } = plot.rows;
+    const some = all.slice(0, TABLE_LINES).map((row) => row.map((v) => (typeof v === "number" ? number(v) : v)));
+    return tableWith(head, some, all.length > some.length && `The first ${some.length} of ${all.length} rows. The CSV has all.`);
+  }
   const all = shownSeries(plot);
   const series = all.slice(0, TABLE_SERIES);
-  const times = plot.data[0];
+  const own = recordedIn(plot);
+  const times = own[0];
   const rows = [...new Set(Array.from({ length: TABLE_ROWS }, (_, k) => Math.round((k * (times.length - 1)) / (TABLE_ROWS - 1))))];
-  const line = (tag, texts) => element("tr", {}, ...texts.map((textContent) => element(tag, { textContent })));
-  const table = element(
-    "table",
-    { className: "numbers" },
-    element("thead", {}, line("th", ["t in s", ...series.map(({ s }) => withUnit(plot, s))])),
-    element("tbody", {}, ...rows.map((i) => line("td", [number(times[i]), ...series.map(({ k }) => number(plot.data[k][i]))]))),
-  );
-  const more = all.length > series.length ? [element("p", { className: "note", textContent: `The first ${series.length} of ${all.length} columns; hide agents to see others. The CSV has all.` })] : [];
-  return [table, ...more];
+  const lines = rows.map((i) => [number(times[i]), ...series.map(({ k }) => number(own[k][i]))]);
+  const more = all.length > series.length && `The first ${series.length} of ${all.length} columns; hide agents to see others. The CSV has all.`;
+  return tableWith(["t in s", ...series.map(({ s }) => withUnit(plot, s))], lines, more);
 };
 // Tables that are open say what is drawn.
 const refreshTables = () => document.querySelectorAll(".exports details[open]").forEach((table) => table.dispatchEvent(new Event("toggle")));
@@ -67,6 +78,7 @@ const titleOf = (card) => {
 
 // A curve in a plane or in space has two or three columns.
 const curvesWords = (plot) => {
+  if (plot.rows) return plot.rows.said;
   const count = plot.curves?.() ?? shownSeries(plot).length;
   return count === 1 ? "1 curve" : `${count} curves`;
 };

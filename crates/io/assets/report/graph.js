@@ -1,8 +1,10 @@
 // The graph at one instant: who hears whom, how old what is heard is, and who is silent.
 
 const spans = index.gantt.spans;
-// Where the graph changes very often it is on the page until then.
+// Where the graph changes very often it is on the page until then, and after that where it takes turns again and again.
 const drawnUntil = index.gantt.drawn_until_s ?? Infinity;
+const turnOf = index.gantt.turn_of ?? 0;
+const inTurn = (time) => (time > drawnUntil && turnOf > 0 ? time % spans[turnOf - 1][1] : time);
 const vertices = bodies.length;
 
 // What is known of the age of what is heard: what it is, or between what it is where a delay changes too often to be on the page.
@@ -68,11 +70,12 @@ const MOST_TOLD_APART = 300;
 const isOf = ({ from, to }, vertex) => from === vertex || to === vertex;
 // Of the edges in force those that are drawn. Messages on their way are left out that are not under way for `pace`, s.
 const heardAt = (time, pace = 0, chosen = null) => {
-  if (time > drawnUntil) return { graph: null, time, chosen, edges: [] };
+  const at = inTurn(time);
+  if (at > drawnUntil) return { graph: null, time, chosen, edges: [] };
   let [low, high] = [0, spans.length - 1];
   while (low < high) {
     const half = (low + high + 1) >> 1;
-    if (spans[half][0] <= time) low = half;
+    if (spans[half][0] <= at) low = half;
     else high = half - 1;
   }
   const graph = spans[low]?.[2] ?? 0;

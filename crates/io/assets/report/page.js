@@ -20,11 +20,10 @@ const fill = (card, height) => {
   card.hidden = false;
 
   if (kind === "gantt") {
-    if (index.gantt.rows.length === 0) return empty("no agent hears another");
+    if (index.gantt.rows.length === 0) return empty();
     if (index.gantt.by_receiver) document.getElementById("gantt-by").textContent = "per receiver; the stronger, the more agents it hears";
-    mine.plot = drawPlot(canvas, ganttCard());
-    canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", `${titleOf(card)}: ${index.gantt.rows.length} rows over ${number(whole[1])} s${notDrawn && `, ${notDrawn}`}; the picture of who hears whom says it for every time`);
+    mine.plot = Object.assign(drawPlot(canvas, ganttCard()), { rows: ganttRows() });
+    offer(card, mine.plot);
     return;
   }
   if (kind === "plane") {
@@ -51,6 +50,8 @@ const fill = (card, height) => {
   mine.series = built.series;
   const far = built.log ? null : outliers(built.series);
   mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (isPrinting() ? SHEET_PLOT : card.closest("#stage") && innerWidth > 1000 ? stagePlotHeight() : undefined), within: far?.usual });
+  const grid = built.grid ?? "main";
+  mine.plot.recorded = () => mine.plot.data.map((column) => data.picked(grid, column));
   const lost = built.series.map(({ values }) => values.beyond_s ?? null).filter((t) => t !== null);
   if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
@@ -221,6 +222,7 @@ joint.onchange = () => {
 
 const lines = document.getElementById("break-points");
 lines.parentElement.hidden = index.break_points.length === 0;
+lines.parentElement.title = "When the graph switches, a delay jumps, or a push begins or ends. Where they are many, they are drawn when plots are zoomed in.";
 lines.onchange = () => {
   view.breakPoints = lines.checked;
   for (const plot of plots) plot.redraw(false);

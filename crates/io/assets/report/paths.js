@@ -39,8 +39,8 @@ const pathUnit = (() => {
 if (spatial.length > 0 && sceneTimes.length > 0) {
   const based = spatial.some((b) => layout.bases.has(b));
   const every = (kind) => spatial.every((b) => b.kind === kind);
-  // Where no end-effector is stated, a link ends as far beyond its centre of mass as its joint is before it; that of a planar arm is a rod.
-  const stated = spatial.every((b) => b.tip.length > 0 || scene.arms[b.arm]?.planar);
+  // Where neither an end-effector nor a flange is stated, a link ends as far beyond its centre of mass as its joint is before it.
+  const stated = spatial.every((b) => b.tip.length > 0 || !scene.arms[b.arm]?.guessed);
   const tips = `${stated ? "of the end-effector" : "of the end-effector, estimated from the last link’s centre of mass"}${spatial.length > 1 ? ", each from its own base" : ", from its base"}`;
   const what = every("spacecraft") ? "where the first axis points" : every("arm") ? tips : based ? "each from its own base" : "";
   const card = element("article", { className: "card plot" });

@@ -70,8 +70,10 @@ const printedOn = (frame, { width, height }, paint, dotsAt) => {
 
 const drawPlane = (target, [acrossId, upId], height) => {
   const [across, up] = [quantities[+acrossId], quantities[+upId]];
-  const times = data.t("main");
-  const curve = (label, own, x, y, more = {}) => ({ label, colour: own, x: data.values("main", x), y: data.values("main", y), ...more });
+  // Both coordinates of a point are of one row.
+  const times = data.picked("main", data.t("main"));
+  const along = (k) => data.picked("main", data.values("main", k));
+  const curve = (label, own, x, y, more = {}) => ({ label, colour: own, x: along(x), y: along(y), ...more });
   const curves = agents.flatMap((agent, i) => {
     const own = colour(`--a${i}`);
     const made = across.of[i] == null || up.of[i] == null ? [] : [curve(agent.name, own, across.of[i], up.of[i], { agent: i })];
@@ -157,17 +159,21 @@ const drawPlane = (target, [acrossId, upId], height) => {
       ring(points.at(-1), c.colour);
     }
     pen.restore();
-    Object.assign(pen, { fillStyle: colour("--soft"), textBaseline: "alphabetic", textAlign: "right" });
-    pen.fillText(planeOptions[+acrossId][1], right, bottom - 6);
-    pen.textAlign = "left";
-    pen.fillText(planeOptions[+upId][1], inner.left + 4, inner.top - 4);
+    Object.assign(pen, { fillStyle: colour("--soft"), strokeStyle: colour("--surface"), lineWidth: 4, lineJoin: "round", textBaseline: "alphabetic" });
+    // Curves may run through it.
+    const named = (text, textAlign, x, y) => {
+      pen.textAlign = textAlign;
+      for (const how of ["strokeText", "fillText"]) pen[how](text, x, y);
+    };
+    named(planeOptions[+acrossId][1], "right", right, bottom - 6);
+    named(planeOptions[+upId][1], "left", inner.left + 4, inner.top - 4);
     return to2;
   };
 
   const contexts = canvases.map((canvas) => canvas.getContext("2d"));
   const prepared = (k) => preparedCanvas(canvases[k], contexts[k], size);
   const dotsAt = (ctx, t) => {
-    const place = data.place("main", t);
+    const place = placeIn(times, t);
     const between = (values) => {
       const [a, b] = [values[place.row], values[place.row + (place.part > 0 ? 1 : 0)]];
       return a == null || b == null ? null : a + place.part * (b - a);

@@ -1,10 +1,11 @@
 //! What a run came to, in plain words: whether what was to vanish did, how far it is, and what to change.
 
-use forwardstep_check::{Id, RECOMMENDED_MARGIN, Report, SamplingMargin};
+use forwardstep_check::prediction::only_passes;
+use forwardstep_check::{Answer, Id, RECOMMENDED_MARGIN, Report, SamplingMargin};
 use forwardstep_sim::recording::{ClippedSamples, Ending, Signal};
 use forwardstep_sim::setup::Setup;
 
-use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
+use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater, leads};
 use super::metrics::Metrics;
 use super::names::{agent_name, gap_unit_on, gap_words, unit};
 use super::prediction::{PredictedCourse, PredictedRate, Predictions};
@@ -21,10 +22,14 @@ const FALLS: f64 = 0.9;
 const FALLS_STEADILY: f64 = 0.999;
 /// A gap fell faster before when it did so by this much, of the logarithm of what was left.
 const SLOWS: f64 = 1.15;
+/// So many times what is missing at the rate of the end.
+const ROOM: f64 = 1.5;
 /// A longer run is advised up to so many times its length.
 const LONGEST: f64 = 100.0;
 /// A gap that is so many times what the design alone leaves is not its own.
 const ALONE: f64 = 2.0;
+/// The same where there is another reason.
+const MUCH: f64 = 0.05;
 /// s at the end, in 1/s of the gap, counts as left over above this.
 pub(super) const LEFT_OVER: f64 = 1e-3;
 
@@ -55,17 +60,21 @@ impl Conclusion {
         let end = End::of(&table, &series)?;
         let bound = bound.unwrap_or(VANISHED * largest);
         // What was nothing from the start has vanished as well.
-        let reached = last < bound || last == 0.0;
         let t_s = &record.outcome.recording.t_s;
+        let passes = only_passes(t_s, &series.overall, bound);
+        let reached = last < bound && !passes || last == 0.0;
         let (trend, slows) = (Trend::of(t_s, &series.overall), is_slowing(t_s, &series.overall));
         // A goal may ask for less than that nothing is left.
         let arrival = match reached {
             true if last < VANISHED * largest || last == 0.0 => Arrival::Vanished,
             true => Arrival::WithinGoal,
+            false if passes => Arrival::Passing,
             false => Arrival::Apart,
         };
         let sentence = end.sentence(record.setup, arrival, trend);
-        let advice = if reached { Vec::new() } else { advice(record, metrics, (trend, slows), bound / last) };
+        // What passes is about as far off as it was lately.
+        let left = if passes { lately(t_s, &series.overall) } else { last };
+        let advice = if reached { Vec::new() } else { advice(record, metrics, (trend, slows), bound / left) };
         Some(Conclusion { reached, sentence, advice })
     }
 }
@@ -77,6 +86,8 @@ enum Arrival {
     Vanished,
     /// As close as the goal asks.
     WithinGoal,
+    /// As close for an instant, on the way through.
+    Passing,
     /// Not so close.
     Apart,
 }
@@ -88,6 +99,8 @@ struct End {
     /// The agent furthest from its target; two agents furthest apart.
     agents: Vec<usize>,
     gap: f64,
+    /// How far an agent that leads is from its target, and the others from it, with the axes.
+    led: Option<[(f64, usize); 2]>,
     /// The largest speed of any agent on an axis with the same unit, where it is recorded and agents should come to rest.
     speed: Option<f64>,
 }
@@ -126,25 +139,47 @@ impl End {
             axes.filter_map(move |axis| table.column(agent, Signal::Velocity, axis).and_then(last_of))
         });
         let speed = speeds.map(f64::abs).reduce(greater);
-        Some(End { kind, axis, agents: agents_named, gap, speed })
+        let errors = |of: &dyn Fn(usize) -> bool| {
+            let all = (0..table.agents()).filter(|agent| of(*agent)).flat_map(|agent| {
+                let column = move |axis| table.column(agent, Signal::Error, axis).and_then(last_of);
+                (0..series.per_axis.len()).filter_map(move |axis| Some((column(axis)?.abs(), axis)))
+            });
+            all.reduce(|a, b| if greater(a.0, b.0).to_bits() == a.0.to_bits() { a } else { b })
+        };
+        let led = leads(table.setup)
+            .filter(|_| kind == Gap::Error)
+            .and_then(|leader| Some([errors(&|agent| agent == leader)?, errors(&|agent| agent != leader)?]));
+        Some(End { kind, axis, agents: agents_named, gap, led, speed })
     }
 
     fn sentence(&self, setup: &Setup, arrival: Arrival, trend: Trend) -> String {
-        let End { kind, axis, agents, gap, speed } = self;
+        let End { kind, axis, agents, gap, led: errors, speed } = self;
         let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
         let first = agents.first().copied().unwrap_or(0);
         let size = with_unit(*gap, gap_unit_on(setup, first, *axis));
         let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
         let led = setup.following().is_some();
         let (done, so_far) = match (kind, led) {
+            (Gap::Disagreement, _) if Gap::keeps_offsets(setup) => {
+                ("in formation", format!("{size} apart, less offsets,"))
+            }
             (Gap::Disagreement, _) => ("agreed", format!("{size} apart")),
-            (Gap::Error, true) => ("following", format!("{size} from the leader")),
+            (Gap::Error, true) => match errors {
+                Some([(own, own_axis), (others, axis)]) => {
+                    let leader = leads(setup).unwrap_or(first);
+                    let [own, others] = [(own, own_axis), (others, axis)]
+                        .map(|(size, axis)| with_unit(*size, gap_unit_on(setup, first, *axis)));
+                    let name = agent_name(setup, leader);
+                    ("following", format!("{others} from {name}, and {name} {own} from its target,"))
+                }
+                None => ("following", format!("{size} from the leader")),
+            },
             (Gap::Error, false) => ("on target", format!("{size} from the target")),
         };
         match arrival {
             Arrival::Vanished => return format!("{done}: {so_far} at most"),
             Arrival::WithinGoal => return format!("{done} as far as the goal asks: {so_far} at most"),
-            Arrival::Apart => {}
+            Arrival::Passing | Arrival::Apart => {}
         }
         let still = match speed {
             Some(0.0) if *kind == Gap::Disagreement => ", at rest".to_owned(),
@@ -153,7 +188,8 @@ impl End {
             }
             Some(_) | None => String::new(),
         };
-        format!("not {done}: {} {so_far} ({}){still}, {}", gap_words(setup, *axis), names.join(", "), trend.words())
+        let trend = if arrival == Arrival::Passing { "and so near only in passing" } else { trend.words() };
+        format!("not {done}: {} {so_far} ({}){still}, {trend}", gap_words(setup, *axis), names.join(", "))
     }
 }
 
@@ -219,16 +255,27 @@ fn is_slowing(t_s: &[f64], overall: &[f64]) -> bool {
     rate(1).zip(rate(0)).is_some_and(|(before, now)| before > SLOWS * now)
 }
 
+/// The largest gap of the last quarter.
+fn lately(t_s: &[f64], overall: &[f64]) -> f64 {
+    let (begin_s, end_s) = (t_s.first().copied().unwrap_or(0.0), t_s.last().copied().unwrap_or(0.0));
+    let from = t_s.partition_point(|t_s| *t_s < end_s - 0.25 * (end_s - begin_s));
+    overall[from.min(overall.len())..].iter().copied().fold(0.0, greater)
+}
+
 /// What to change: `share` of the gap is what may be left. With its trend comes whether that slows down.
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, bool), share: f64) -> Vec<String> {
     let mut advice: Vec<String> = Vec::new();
     let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
     let stopped = record.outcome.ending.before_horizon_s().is_some();
-    if let (Trend::Falls(left), Some(last_t_s)) = (trend, metrics.last_t_s) {
+    // Where messages do not reach everybody no time is enough.
+    let violated = |id: Id| record.verdicts.hypotheses.iter().any(|it| it.id == id && it.answer() == Answer::Violated);
+    let is_cut = violated(Id::SpanningTree);
+    let takes_s = takes_s.filter(|_| !is_cut);
+    if let (Trend::Falls(left), Some(last_t_s), false) = (trend, metrics.last_t_s, is_cut) {
         // What falls fast at first slows down to what the design does by itself, where that is known.
         let more_s = (last_t_s * share.ln() / left.ln() / 4.0).max(takes_s.unwrap_or(0.0));
-        // A quarter more than it takes at this rate, which need not stay.
-        let end_s = nice(last_t_s + 1.25 * more_s);
+        // Half as much again as it takes at this rate, which need not stay.
+        let end_s = nice(last_t_s + ROOM * more_s);
         if stopped && end_s <= record.setup.time.end_s {
             advice.push("let it run to its end: at this rate that is enough".into());
         } else if more_s.is_finite() && more_s <= LONGEST * last_t_s {
@@ -241,7 +288,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, boo
     }
     // A time has been advised, with room.
     let needs = |takes_s: f64| {
-        if advice.is_empty() { format!(": it needs some {} s more", about(takes_s)) } else { String::new() }
+        if advice.is_empty() { format!(": it needs some {} s more", nice(ROOM * takes_s)) } else { String::new() }
     };
     advice.extend(takes_s.map(needs).map(|needs| {
         format!("the design is slow, whatever the robots do{needs}; larger weights, more links or larger roots make it faster")
@@ -268,7 +315,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, boo
     }
     if let (Some(s), Disagreement::Measured { last, .. }) = (metrics.final_tracking_error, metrics.disagreement)
         && !matches!(trend, Trend::Falls(_))
-        && s > if late { last } else { LEFT_OVER * last }
+        && s > left_over(late, record.verdicts) * last
     {
         // More damping is what samples bear least.
         let coarse = metrics.watched.and_then(|watched| watched.sampling_margin).map(|margin| margin.sigma);
@@ -292,6 +339,19 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, boo
         advice.push("see `forwardstep check --predict` for how fast the design is without tracking errors".into());
     }
     advice
+}
+
+/// The part of the gap above which s at the end is what keeps it: all of it behind a leader who is heard late, and much of it where a hypothesis
+/// is violated, which says more.
+fn left_over(late: bool, report: &Report) -> f64 {
+    let is_violated = report.hypotheses.iter().any(|hypothesis| hypothesis.answer() == Answer::Violated);
+    if late {
+        1.0
+    } else if is_violated {
+        MUCH
+    } else {
+        LEFT_OVER
+    }
 }
 
 /// Whether a leader is followed over links that delay, which leaves an error however well the robots do.

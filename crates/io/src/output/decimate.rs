@@ -1,12 +1,14 @@
-//! Fewer points for display that look the same, and what is between them: the least and greatest value of every bucket of rows, and break-points
-//! at which a signal that jumps is drawn as a jump.
+//! Fewer points for display that look the same, and what is between them: of every bucket of rows the first as it is, and the least and greatest
+//! value, and break-points at which a signal that jumps is drawn as a jump.
 
 use std::ops::Range;
 
 /// Where the points of a picture come from; shared by all signals of a recording, so that they share their times.
 pub(crate) struct Grid {
-    /// Rising; a break-point occurs twice.
+    /// Rising; a break-point occurs twice, or three times where there is a row at it.
     pub(crate) t_s: Vec<f64>,
+    /// Of each point whether it is a row as it was recorded. The others are drawn where they are so that curves look as they do.
+    pub(crate) exact: Vec<bool>,
     places: Vec<Place>,
     /// Rows were left out.
     pub(crate) decimated: bool,
@@ -15,9 +17,9 @@ pub(crate) struct Grid {
 enum Place {
     /// One row as it is.
     Row(usize),
-    /// Two points: least and greatest of the rows, the earlier one first.
+    /// Three points: the first of the rows, then the least and greatest of all of them, the earlier one first.
     Bucket(Range<usize>),
-    /// Two points: before and after.
+    /// Two points, before and after, and between them the row at this very time, if there is one.
     Break(Break),
 }
 
@@ -37,15 +39,23 @@ impl Grid {
         let breaks = if break_points.len() * 4 > budget { &[] } else { break_points };
         let breaks = split(rows_t_s, breaks);
         let rows: usize = rows_t_s.len();
-        let available = budget.saturating_sub(2 * breaks.len()).max(8);
-        let rows_per_bucket = if rows <= available { 1 } else { rows.div_ceil(available / 2) };
+        let available = budget.saturating_sub(3 * breaks.len()).max(12);
+        let rows_per_bucket = if rows <= available { 1 } else { rows.div_ceil(available / 3) };
 
-        let mut grid = Grid { t_s: Vec::new(), places: Vec::new(), decimated: rows_per_bucket > 1 };
+        let mut grid = Grid { t_s: Vec::new(), exact: Vec::new(), places: Vec::new(), decimated: rows_per_bucket > 1 };
         let mut start = 0;
         for found in breaks {
             grid.fill(rows_t_s, start..found.before.end, rows_per_bucket);
             start = found.on.end;
-            grid.t_s.extend([found.t_s, found.t_s]);
+            let exact: &[bool] = match found.on.len() {
+                0 => &[false, false],
+                1 => &[false, true, false],
+                _ => &[true, true],
+            };
+            // A row at it may be a rounding off.
+            let t_s = found.on.clone().next().map_or(found.t_s, |row| rows_t_s[row]);
+            grid.t_s.extend(exact.iter().map(|_| t_s));
+            grid.exact.extend(exact);
             grid.places.push(Place::Break(found));
         }
         grid.fill(rows_t_s, start..rows, rows_per_bucket);
@@ -61,10 +71,12 @@ impl Grid {
         while !rows.is_empty() {
             let bucket = rows.start..(rows.start + rows_per_bucket).min(rows.end);
             rows.start = bucket.end;
-            if bucket.len() <= 2 {
+            if bucket.len() <= 3 {
                 bucket.for_each(|row| self.row(rows_t_s, Some(row)));
             } else {
-                self.t_s.extend([rows_t_s[bucket.start], rows_t_s[bucket.end - 1]]);
+                let (from_s, to_s) = (rows_t_s[bucket.start], rows_t_s[bucket.end - 1]);
+                self.t_s.extend([0.0, 0.5, 1.0].map(|part| from_s + part * (to_s - from_s)));
+                self.exact.extend([true, false, false]);
                 self.places.push(Place::Bucket(bucket));
             }
         }
@@ -74,6 +86,7 @@ impl Grid {
     fn row(&mut self, rows_t_s: &[f64], row: Option<usize>) {
         if let Some(row) = row {
             self.t_s.push(rows_t_s[row]);
+            self.exact.push(true);
             self.places.push(Place::Row(row));
         }
     }
@@ -85,8 +98,15 @@ impl Grid {
         for place in &self.places {
             match place {
                 Place::Row(row) => points.push(value(*row)),
-                Place::Bucket(rows) => points.extend(least_and_greatest(rows.clone(), value)),
-                Place::Break(at) => points.extend(at.sides(rows_t_s, value, may_jump)),
+                Place::Bucket(rows) => {
+                    points.push(value(rows.start));
+                    points.extend(least_and_greatest(rows.clone(), value));
+                }
+                Place::Break(at) => {
+                    let [before, after] = at.sides(rows_t_s, value, may_jump);
+                    let on = (at.on.len() == 1).then(|| value(at.on.start));
+                    points.extend([Some(before), on, Some(after)].into_iter().flatten());
+                }
             }
         }
         points
@@ -232,11 +252,12 @@ mod tests {
         let grid = Grid::new(&t_s, &[0.5], 100);
         let place = grid.t_s.iter().position(|t| *t == 0.5).unwrap();
         let drawn =
-            |values: &[f64]| -> [f64; 2] { grid.sample(&t_s, values, true)[place..place + 2].try_into().unwrap() };
+            |values: &[f64]| -> [f64; 3] { grid.sample(&t_s, values, true)[place..place + 3].try_into().unwrap() };
         let right: Vec<f64> = (0..11).map(|k| if k < 5 { 1.0 } else { 2.0 }).collect();
         let left: Vec<f64> = (0..11).map(|k| if k <= 5 { 1.0 } else { 2.0 }).collect();
-        assert_eq!(drawn(&right), [1.0, 2.0]);
-        assert_eq!(drawn(&left), [1.0, 2.0]);
+        assert_eq!(drawn(&right), [1.0, 2.0, 2.0]);
+        assert_eq!(drawn(&left), [1.0, 1.0, 2.0]);
+        assert_eq!(grid.exact[place..place + 3], [false, true, false]);
     }
 
     #[test]
@@ -262,6 +283,24 @@ mod tests {
         assert_eq!(drawn.len(), grid.t_s.len());
         assert!(drawn.contains(&99.0) && drawn.contains(&-98.0) && !drawn.iter().any(|v| v.is_nan()));
         assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0], values[99_999]));
+    }
+
+    /// Extremes stand near the time at which they occurred; what is said to be a row has the values of one.
+    #[test]
+    fn regress_what_counts_as_a_row_is_one() {
+        let t_s = rows(10_000, 0.01);
+        let values: Vec<f64> = t_s.iter().map(|t| (7.0 * t).sin()).collect();
+        for breaks in [&[][..], &[20.0, 33.333, 50.005]] {
+            let grid = Grid::new(&t_s, breaks, 900);
+            let drawn = grid.sample(&t_s, &values, true);
+            assert_eq!((drawn.len(), grid.exact.len()), (grid.t_s.len(), grid.t_s.len()));
+            let rows = (0..drawn.len()).filter(|k| grid.exact[*k]);
+            assert!(rows.clone().count() > 290);
+            for k in rows {
+                let row = t_s.partition_point(|t| *t < grid.t_s[k]);
+                assert_eq!((t_s[row], values[row]), (grid.t_s[k], drawn[k]), "{k}");
+            }
+        }
     }
 
     #[test]

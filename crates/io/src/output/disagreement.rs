@@ -40,12 +40,29 @@ impl Gap {
     }
 
     /// How it is measured.
-    pub fn formula(self) -> &'static str {
-        match self {
-            Gap::Disagreement => "max |qᵢ − qⱼ|",
-            Gap::Error => "max |error|",
+    pub fn formula(self, setup: &Setup) -> &'static str {
+        let several = setup.agents.iter().any(|agent| agent.robot.axes.len() > 1);
+        match (self, several) {
+            (Gap::Disagreement, _) if Gap::keeps_offsets(setup) => {
+                "max |yᵢ − yⱼ| of any coordinate, y = q less its offset"
+            }
+            (Gap::Disagreement, true) => "max |qᵢ − qⱼ| of any coordinate",
+            (Gap::Disagreement, false) => "max |qᵢ − qⱼ|",
+            (Gap::Error, _) if leads(setup).is_some() => "max |error| of any coordinate, of the leader from its target",
+            (Gap::Error, true) => "max |error| of any coordinate",
+            (Gap::Error, false) => "max |error|",
         }
     }
+
+    /// Whether agents are to differ by offsets.
+    pub fn keeps_offsets(setup: &Setup) -> bool {
+        Gap::of(setup) == Gap::Disagreement && setup.agents.iter().any(|agent| agent.target.is_some())
+    }
+}
+
+/// The agent that leads the others.
+pub(super) fn leads(setup: &Setup) -> Option<usize> {
+    setup.leader().filter(|leader| *leader < setup.agents.len())
 }
 
 /// max |q_i − q_j| over agents and axes, less their offsets, or max |error| where agents have targets; rad or m. Or why

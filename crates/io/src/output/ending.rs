@@ -4,7 +4,7 @@ use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, S
 use forwardstep_sim::setup::{AgentSetup, Method, Setup};
 use forwardstep_sim::{ChainLaw, ChainStep};
 
-use super::names;
+use super::{names, text};
 use crate::wording::{about, number, rounded};
 
 /// A gain is to blame for a rate that is at most this many times higher or lower than its own.
@@ -96,8 +96,9 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             format!("hears through {words} that, at t = {} s, leaves the bounds that its author declared", about(*at_s))
         }
         BreakdownCause::RanAway { value, steps } => format!(
-            "ran away: it is {value:.2e}, and {steps} steps did not reach the next sample; sample faster, or let K or the \
-             delay of the torque be smaller"
+            "ran away: it is {}, and {steps} steps did not reach the next sample; sample faster, or let K or the \
+             delay of the torque be smaller",
+            text::number(*value)
         ),
         // Adding zero leaves no sign at a zero.
         BreakdownCause::Vanished { value, .. } if breakdown.t_s <= 0.0 => {
@@ -111,9 +112,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             // A period that is too long brings everything out of step, and is looked at first.
             let faster = if setup.control.is_some() { "sample faster, " } else { "" };
             format!(
-                "is {value:.3e}{unit}: the law divides by {what} must stay away from zero by {}{unit}; {faster}start elsewhere, or choose \
+                "is {}{unit}: the law divides by {what} must stay away from zero by {}{unit}; {faster}start elsewhere, or choose \
                  slower gains",
-                floor.abs()
+                text::number(*value),
+                text::number(floor.abs())
             )
         }
         BreakdownCause::PositionLimit { value, limits: [low, high] } => {

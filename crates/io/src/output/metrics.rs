@@ -1,9 +1,12 @@
 //! A run in a few numbers.
 
-use forwardstep_sim::recording::{Recording, Signal};
+use forwardstep_sim::recording::{Outcome, Recording, Signal};
+use forwardstep_sim::reference::Backstepping;
 use forwardstep_sim::{LineValue, RotorcraftModel, Setup};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use forwardstep_check::prediction::only_passes;
 
 use super::disagreement::greater;
 pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
@@ -11,6 +14,7 @@ use super::number;
 use super::practical::Watched;
 use super::table::Table;
 use crate::scenario::Goal;
+use crate::wording::about;
 
 /// V(0) is not taken to be smaller than this, in J, when the residual of the balance is put in relation to it: an agent that
 /// starts without any error has V(0) = 0.
@@ -40,7 +44,7 @@ pub struct Metrics {
     pub speed: Option<Speed>,
     /// The largest |τ| of every agent and axis, at the rows that are recorded.
     pub peak_torques: Vec<Peak>,
-    /// Limits that were exceeded, or reached where they are enforced.
+    /// Limits that were exceeded, or reached where they are enforced, at the rows that are recorded.
     pub limits_reached: Vec<LimitReached>,
     /// How well V + ∫ dissipation = V(0) holds; absent where the balance is not computed.
     #[serde(alias = "ledger_error")]
@@ -277,7 +281,7 @@ fn settled(t_s: &[f64], overall: &[f64], bound: f64) -> Option<f64> {
     // "not below" rather than "above or equal": a disagreement that is not a number has not settled.
     let above = |d: &f64| !matches!(d.partial_cmp(&bound), Some(std::cmp::Ordering::Less));
     let first_settled = overall.iter().rposition(above).map_or(0, |last_above| last_above + 1);
-    t_s.get(first_settled).copied()
+    t_s.get(first_settled).copied().filter(|_| !only_passes(t_s, overall, bound))
 }
 
 fn limits_reached(table: &Table<'_>) -> Vec<LimitReached> {
@@ -391,8 +395,34 @@ fn balance_residual(table: &Table<'_>) -> Option<BalanceResidual> {
     worst
 }
 
+/// Whether V loses what the law dissipates and no more: the filter of backstepping adds what its output is off by.
+pub(crate) fn keeps_balance(setup: &Setup) -> bool {
+    !setup.reference.is::<Backstepping>()
+}
+
+/// Steps between two rows, on the average, above which what lies between rows may be another.
+const MANY_STEPS: f64 = 3.0;
+
+/// That rows are so far apart beside the steps of a run that peaks and limits between them are not seen; `None` where they are not, and where
+/// controllers sample, which ends steps that nothing else asks for.
+pub fn coarse_rows(setup: &Setup, outcome: &Outcome) -> Option<String> {
+    let (rows, steps) = (outcome.recording.t_s.len(), outcome.statistics.steps);
+    let is_coarse = setup.control.is_none() && steps as f64 > MANY_STEPS * rows.max(1) as f64;
+    let mean_s = outcome.recording.t_s.last()? / rows.saturating_sub(1).max(1) as f64;
+    let what = "peaks and limits between rows are not seen";
+    is_coarse.then(|| {
+        format!(
+            "{rows} rows, {} s apart on the average, beside {steps} steps: {what}; record more often",
+            about(mean_s)
+        )
+    })
+}
+
 /// (V + ∫ dissipation − V(0)) / V(0) row by row; as a part of the largest V where pushes put energy in.
 pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f64>> {
+    if !keeps_balance(table.setup) {
+        return None;
+    }
     let v = table.column(agent, Signal::Lyapunov, 0)?;
     let dissipated = table.column(agent, Signal::Dissipation, 0)?;
     let start = *v.first()?;

@@ -93,7 +93,7 @@ pub use inputs::digest;
 pub use journal::{Journal, JournalError};
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,
-    LimitReached, Metrics, Peak, Speed,
+    LimitReached, Metrics, Peak, Speed, coarse_rows,
 };
 pub use packets::Link;
 pub use plots::{plot_filters, plot_orders};
@@ -104,7 +104,7 @@ pub use remark::Remark;
 pub use residuals::{residual_document, residual_lines};
 pub use restore::SavedRun;
 pub use restore_error::{RestoreError, SummaryError, TableError};
-pub use sampling_limit::{Accepted, Deployment, Measuring, Rule, SamplingLimit, Trial};
+pub use sampling_limit::{Accepted, Deployment, LimitRemark, Measuring, Rule, SamplingLimit, Trial};
 pub use smoothness::{
     FilteredInput, LargestInputJump, NothingSaid, SMOOTHNESS_FORMAT, SmoothInput, SmoothOrder, SmoothScenario,
     SmoothnessDocument, SmoothnessFound,

@@ -14,6 +14,7 @@ use super::decimate::between;
 use super::guarantee::Guarantee;
 use super::text::number as number_words;
 use super::{names, number};
+use crate::instant;
 
 /// Points of the course that are kept.
 const MOST_POINTS: usize = 400;
@@ -190,6 +191,11 @@ impl Predictions {
         }
     }
 
+    /// Whether it says no more than that one agent alone has nobody to agree with.
+    pub fn is_of_one_alone(&self, setup: &Setup) -> bool {
+        setup.agents.len() < 2 && self.course().is_none()
+    }
+
     /// Sentences for people, without a full stop.
     pub fn sentences(&self, setup: &Setup) -> Vec<String> {
         let unit = names::gap_unit(setup);
@@ -200,7 +206,7 @@ impl Predictions {
                 let reached = if course.reached { "agreement is reached" } else { "agreement is not reached" };
                 let delayed = course.delay(setup);
                 let settled = match course.settled_s {
-                    Some(t_s) => format!(", settled to 1 % after {t_s:.2} s{delayed}"),
+                    Some(t_s) => format!(", settled to 1 % after {} s{delayed}", instant(t_s)),
                     None => delayed,
                 };
                 let last = course.disagreement.last().copied().unwrap_or(f64::NAN);
@@ -222,12 +228,17 @@ impl Predictions {
                     number_words(*rate_per_s)
                 )
             }
-            PredictedRate::Roots { root_per_s: [re, im], correction_per_s, excited, .. } => {
+            PredictedRate::Roots { root_per_s: [re, im], correction_per_s, excited, multiplicity, .. } => {
                 let turning = if *im == 0.0 { String::new() } else { format!(" ± {} i", number_words(*im)) };
                 let re = number_words(*re);
                 let (correction, excited) = (number_words(*correction_per_s), number_words(*excited));
                 let into = format!("the start makes {excited} {unit}").trim_end().to_owned();
-                format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}; {into} of it")
+                // Of k roots in one place grows a power of t beside the exponential.
+                let several = match multiplicity {
+                    0 | 1 => String::new(),
+                    &count => format!(", of multiplicity {count}, beside which a polynomial in t of degree {} decays with it", count - 1),
+                };
+                format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}{several}; {into} of it")
             }
         });
         sentences.extend(
@@ -360,8 +371,8 @@ impl CourseFound {
         let peak_torque = three_places(peak.value.abs());
         let clipped = self.clipped_words(setup);
         Some(format!(
-            "peak torque {peak_torque} {unit}, {agent}, {axis} at {:.2} s{near}{at_most}{more}{clipped}",
-            peak.t_s
+            "peak torque {peak_torque} {unit}, {agent}, {axis} at {} s{near}{at_most}{more}{clipped}",
+            instant(peak.t_s)
         ))
     }
 

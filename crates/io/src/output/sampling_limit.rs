@@ -25,6 +25,8 @@ const REMAINS: f64 = 0.1;
 const TOLERANCE: f64 = 0.004;
 /// No period longer than this many times the first that works is tried.
 const LONGEST: f64 = 1024.0;
+/// Nor one with which a run has fewer samples: they would tell nothing.
+const FEWEST_SAMPLES: f64 = 10.0;
 
 /// How the controllers of a scenario shall sample, where that is not as it states; exact measurements where it states nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -87,14 +89,42 @@ pub enum Measuring {
 pub struct SamplingLimit {
     /// What rules promise before the run; `None` where they say nothing.
     pub rule: Option<Rule>,
-    /// The longest period that works, s; `None` where the shortest one does not.
+    /// The longest period that works, s; `None` where the shortest one does not, or nothing can be measured.
     pub measured_s: Option<f64>,
+    /// What is to be known of it.
+    pub remark: Option<LimitRemark>,
     /// What was accepted.
     pub peak_error: f64,
     /// Likewise.
     pub remains: f64,
     /// The runs that were made, in their order.
     pub trials: Vec<Trial>,
+}
+
+/// What is to be known of what was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitRemark {
+    /// No longer period was tried: with one a run would have fewer than ten samples.
+    LongestTried,
+    /// The run has fewer than ten samples with a period that is short by the rule.
+    ShortRun,
+    /// Agents start where they are to be, and stay, whatever the period is.
+    NothingMoves,
+}
+
+impl LimitRemark {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            LimitRemark::LongestTried => {
+                "longer ones were not tried: they would leave a run fewer than ten samples; let `time.end_s` be longer"
+            }
+            LimitRemark::ShortRun => {
+                "a run has fewer than ten samples with any period worth trying; let `time.end_s` be longer"
+            }
+            LimitRemark::NothingMoves => "nothing has to move, whatever the period is; let agents start elsewhere",
+        }
+    }
 }
 
 impl Deployment {
@@ -177,31 +207,42 @@ impl SamplingLimit {
         let peak_error = accepted.peak_error.unwrap_or((LARGER * first.peak_error).max(first.peak_reference));
         let remains = accepted.remains.unwrap_or((LARGER * first.remains).max(REMAINS * first.initial));
         let works = |trial: Trial| trial.peak_error <= peak_error && trial.remains <= remains;
-        let measured_s = if settles(first) && works(first) {
-            Some(bisect(first_s, |period_s| Ok(works(run(period_s)?)))?)
+        let most_s = (setup.time.end_s / FEWEST_SAMPLES).min(LONGEST * first_s);
+        // Of what is accepted by its user something may be measured all the same.
+        let is_still = accepted == Accepted::default() && first.initial == 0.0 && remains == 0.0;
+        let (measured_s, remark) = if first_s > most_s {
+            (None, Some(LimitRemark::ShortRun))
+        } else if is_still {
+            (None, Some(LimitRemark::NothingMoves))
+        } else if settles(first) && works(first) {
+            let (found_s, is_longest) = bisect(first_s, most_s, |period_s| Ok(works(run(period_s)?)))?;
+            (Some(found_s), is_longest.then_some(LimitRemark::LongestTried))
         } else {
-            None
+            (None, None)
         };
-        Ok(SamplingLimit { rule, measured_s, peak_error, remains, trials })
+        Ok(SamplingLimit { rule, measured_s, remark, peak_error, remains, trials })
     }
 }
 
-/// The longest period that works, where `low_s` does.
-fn bisect(mut low_s: f64, mut works: impl FnMut(f64) -> Result<bool, SetupError>) -> Result<f64, SetupError> {
-    let most_s = LONGEST * low_s;
-    let mut high_s = 4.0 * low_s;
+/// The longest period that works, where `low_s` does, and whether it is the longest that is tried, `most_s`.
+fn bisect(
+    mut low_s: f64,
+    most_s: f64,
+    mut works: impl FnMut(f64) -> Result<bool, SetupError>,
+) -> Result<(f64, bool), SetupError> {
+    let mut high_s = (4.0 * low_s).min(most_s);
     while works(high_s)? {
         low_s = high_s;
-        high_s *= 2.0;
-        if high_s > most_s {
-            return Ok(low_s);
+        if high_s >= most_s {
+            return Ok((low_s, true));
         }
+        high_s = (2.0 * high_s).min(most_s);
     }
     while high_s > (1.0 + TOLERANCE) * low_s {
         let middle_s = 0.5 * (low_s + high_s);
         if works(middle_s)? { low_s = middle_s } else { high_s = middle_s }
     }
-    Ok(low_s)
+    Ok((low_s, false))
 }
 
 /// Runs `setup` in full.
@@ -238,14 +279,16 @@ mod tests {
     fn the_longest_period_that_works_is_found_and_not_looked_for_for_ever() {
         for edge in [1.01, 3.9, 4.0, 77.7] {
             let mut tries = 0;
-            let found = bisect(1.0, |period_s| {
+            let found = bisect(1.0, 1024.0, |period_s| {
                 tries += 1;
                 Ok(period_s < edge)
             });
-            let found = found.expect("no run fails");
-            assert!(found < edge && edge <= (1.0 + TOLERANCE) * found && tries < 20, "{edge}: {found} in {tries}");
+            let (found, is_longest) = found.expect("no run fails");
+            assert!(
+                !is_longest && found < edge && edge <= (1.0 + TOLERANCE) * found && tries < 20,
+                "{edge}: {found} in {tries}"
+            );
         }
-        let endless = bisect(1.0, |_| Ok(true)).expect("no run fails");
-        assert!(endless > 500.0 && endless <= 1024.0, "{endless}");
+        assert_eq!(bisect(1.0, 1000.0, |_| Ok(true)).expect("no run fails"), (1000.0, true));
     }
 }

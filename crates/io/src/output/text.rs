@@ -1,6 +1,7 @@
 //! Numbers and sentences as people read them.
 
 use forwardstep_core::signal::superscript;
+use forwardstep_sim::quantity::with_power;
 use maud::{Markup, html};
 
 pub(crate) use crate::wording::count;
@@ -62,6 +63,20 @@ pub(crate) fn in_unit(unit: &str) -> String {
     if matches!(unit, "" | "1") { String::new() } else { format!(" in {unit}") }
 }
 
+/// `2.5e-4` as [`number`] writes it, `2.5 × 10⁻⁴`, wherever a word is such a number.
+fn powers(words: &str) -> String {
+    let is_part = |c: char| c.is_alphanumeric() || "._-−".contains(c);
+    let told = |token: &str| {
+        let word = token.trim_end_matches(|c| !is_part(c)).trim_end_matches('.');
+        let (digits, power) = word.split_once('e')?;
+        let is_number = digits.trim_start_matches(['-', '−']).starts_with(|c: char| c.is_ascii_digit());
+        digits.replace('−', "-").parse::<f64>().ok().filter(|_| is_number)?;
+        power.parse::<i32>().ok()?;
+        Some(format!("{}{}", with_power(word).replace('-', "−"), &token[word.len()..]))
+    };
+    words.split_inclusive(|c| !is_part(c)).map(|token| told(token).unwrap_or_else(|| token.to_owned())).collect()
+}
+
 /// A sentence of the program, in which backticks stand around what is code; one without a partner stays as it is.
 pub(crate) fn prose(words: &str) -> Markup {
     let parts: Vec<&str> = words.split('`').collect();
@@ -69,7 +84,7 @@ pub(crate) fn prose(words: &str) -> Markup {
     html! {
         @for (k, part) in parts.iter().enumerate() {
             @if is_code(k) { code { (part) } }
-            @else if k % 2 == 0 { (part) }
+            @else if k % 2 == 0 { (powers(part)) }
             // What is not closed, or has nothing in it, keeps its backticks.
             @else { "`" (part) @if k + 1 < parts.len() { "`" } }
         }
@@ -88,6 +103,20 @@ pub(crate) fn time_reached(until_s: f64, end_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_in_sentences_are_written_as_others_are() {
+        let cases = [
+            ("at most 2.59e-4 rad.", "at most 2.59 × 10⁻⁴ rad."),
+            ("(1e12, -3.0e-9) and 1e-5.", "(1 × 10¹², −3.0 × 10⁻⁹) and 1 × 10⁻⁵."),
+            ("arm-1e5, pe2, 3e, e5, 0x1e5, 1.2.3e4 and 12e45e6", "arm-1e5, pe2, 3e, e5, 0x1e5, 1.2.3e4 and 12e45e6"),
+            ("1.5e", "1.5e"),
+        ];
+        for (words, wanted) in cases {
+            assert_eq!(powers(words), wanted);
+        }
+        assert_eq!(prose("`1e-4` of 1e-4").into_string(), "<code>1e-4</code> of 1 × 10⁻⁴");
+    }
 
     #[test]
     fn numbers_are_short() {

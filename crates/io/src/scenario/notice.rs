@@ -271,7 +271,9 @@ impl fmt::Display for Notice {
                     Some(_) if !is_allowed => {
                         write!(f, "no rate that a run may have is enough; let {too_large} be smaller")
                     }
-                    Some(enough_hz) => write!(f, "sample at {} Hz, or let {too_large} be smaller", about(*enough_hz)),
+                    Some(enough_hz) => {
+                        write!(f, "sample at {} Hz, or let {too_large} be smaller", about(*enough_hz).typed())
+                    }
                     None => {
                         write!(f, "with these gains the torque comes too late for any rate; let {too_large} be smaller")
                     }
@@ -330,7 +332,7 @@ impl fmt::Display for Notice {
                  longer steps than {} s make unstable; take shorter ones, or the adaptive method",
                 number(*step_s),
                 about(*per_s),
-                about(*enough_s)
+                about(*enough_s).typed()
             ),
             Notice::StiffDamping { agent, per_s, steps } => write!(
                 f,

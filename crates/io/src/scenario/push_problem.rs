@@ -152,7 +152,7 @@ pub enum PushProblem {
         rows: usize,
     },
     /// Tables that do not fit into memory.
-    #[error("the tables of all pushes hold about {} numbers, but at most {} are accepted", about(*.numbers), number(*.most))]
+    #[error("the tables of all pushes hold about {} numbers, but at most {} are accepted", about(*.numbers).typed(), number(*.most))]
     TooLarge {
         /// How many numbers.
         numbers: f64,

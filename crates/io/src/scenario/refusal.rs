@@ -115,7 +115,7 @@ pub(super) fn advice(error: &SetupError) -> Option<String> {
         }
         SetupError::RecordingTooLarge { least_s: None, .. } => "record at fewer times, or write `record_every_s`".to_owned(),
         SetupError::RecordingTooLarge { least_s: Some(least_s), .. } => {
-            format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s))
+            format!("for this `end_s` let `record_every_s` be at least {}", about(1.05 * least_s).typed())
         }
         SetupError::UnitsDiffer { .. } => {
             "point masses, vehicles and robots with three prismatic joints have a position in space".to_owned()

@@ -440,7 +440,7 @@ pub enum SetupError {
     /// A recording that would not fit into memory.
     #[error(
         "the recording would hold {} numbers, {} rows of {columns} columns, but at most {} fit",
-        about(*.rows * *.columns as f64), about(*.rows), number(*.most)
+        about(*.rows * *.columns as f64).typed(), about(*.rows).typed(), number(*.most)
     )]
     RecordingTooLarge {
         /// How many rows.

@@ -288,6 +288,8 @@ pub enum FactorEverywhere {
     },
     /// It is zero in this state, or changes its sign there.
     Zero(Vec<f64>),
+    /// It is a product of slopes along states, of which no bound is looked for.
+    Slopes,
     /// Nothing.
     Unknown,
 }

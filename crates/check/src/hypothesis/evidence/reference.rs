@@ -67,6 +67,8 @@ pub enum ReferenceEvidence {
     NoDesign {
         /// Whether graph, weights and delays are constant.
         steady: bool,
+        /// Whether their polynomial is given by roots, so that it could be compared.
+        by_roots: bool,
     },
     /// They are written in variables in which none is known.
     NoDesignInThese,

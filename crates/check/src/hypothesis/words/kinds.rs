@@ -78,6 +78,9 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
                     format!("; in every state it is {} at least, which is less", rounded_down(*least))
                 }
                 FactorEverywhere::Zero(at) => format!("; it comes to zero {}", in_state(at)),
+                FactorEverywhere::Slopes => {
+                    "; it is ψ times the slopes of the equations along their next states, of which no bound is looked for".into()
+                }
                 FactorEverywhere::Unknown => String::new(),
             };
             let falls = match matrix {
@@ -187,7 +190,7 @@ pub(super) fn words(evidence: &KindEvidence) -> String {
                 agent.name
             )
         }
-        KindEvidence::Matched => "they do: the power of what acts is e_n w_n, which leaves V finite".into(),
+        KindEvidence::Matched => "they do: the power of what acts is eₙ wₙ, which leaves V finite".into(),
         KindEvidence::Unmatched { agent } => format!(
             "what disturbs {} enters where the slopes of the steps may grow with the state, so that V may not stay finite",
             agent.name

@@ -57,7 +57,7 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
             bound(*high)
         ),
         LinkEvidence::VaryingWeights { low, high, lags: false } => format!(
-            "a weight follows a formula, within {} and {}: where it changes, the design, which is realised by its integral, leaves −ẇ(dq_i − dq_j) \
+            "a weight follows a formula, within {} and {}: where it changes, the design, which is realised by its integral, leaves −ẇ(q̇ᵢ − q̇ⱼ) \
              over, so that what is integrated is not the law that the proof speaks of",
             lower_bound(*low),
             bound(*high)

@@ -67,10 +67,10 @@ fn of(subject: &Subject) -> String {
             format!("the derivatives of the offset of {} up to the {}", names(agents), ordinal(*derivatives))
         }
         Subject::Drive(design) => match design {
-            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => "ddq_0 + α dq_0",
-            FollowingDesign::Swarm { .. } => "dddq_0",
+            FollowingDesign::Continuous | FollowingDesign::Observer { .. } => "q̈₀ + α q̇₀",
+            FollowingDesign::Swarm { .. } => "q⃛₀",
             FollowingDesign::Differentiable | FollowingDesign::WithoutAcceleration | FollowingDesign::Composite => {
-                "dddq_0 + β ddq_0 + α dq_0"
+                "q⃛₀ + β q̈₀ + α q̇₀"
             }
         }
         .into(),

@@ -55,15 +55,21 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
             "their polynomial is of degree {order}, and not Hurwitz: in the array of Routh the first entry of row {row}, counted from 0, is not \
              positive"
         ),
-        ReferenceEvidence::NoDesign { steady: true } => {
-            "by its roots the way in which agents hear each other is neither (24) nor (a5), so that no theorem of the paper speaks about them; \
-             graph, weights and delays are constant, and roots would tell, which this program does not compute for desired dynamics"
-                .into()
-        }
-        ReferenceEvidence::NoDesign { steady: false } => {
-            "by its roots the way in which agents hear each other is neither (24) nor (a5), and nothing is known of where others lead over graphs \
-             that switch and links that are late"
-                .into()
+        ReferenceEvidence::NoDesign { steady, by_roots } => {
+            let compared = match by_roots {
+                true => "by comparison of polynomials the way in which agents hear each other is neither (24) nor (a5)",
+                false => {
+                    "the polynomial is given by coefficients, of which no roots are computed: whether the way in which agents hear each other is \
+                     (24) or (a5) is seen where it is given by `roots_per_s`"
+                }
+            };
+            let beside = match steady {
+                true => {
+                    "graph, weights and delays are constant, and roots of the loop would tell, which this program does not compute for desired dynamics"
+                }
+                false => "of other ways nothing is known of where they lead over graphs that switch and links that are late",
+            };
+            format!("{compared}; {beside}")
         }
         ReferenceEvidence::Tried { runs, found: None } => format!(
             "{runs} runs of these dynamics alone, from states that were drawn, half of them with an s that vanishes, came closer to what they are for; \

@@ -104,10 +104,12 @@ pub struct WholeLoop {
 
 impl WholeLoop {
     /// Of the agents of a setup; `None` when control is continuous, or nothing finite is found. Without the trial but where
-    /// some adapt under other laws than (6)–(7).
+    /// some adapt under other laws than (6)–(7), or along targets of their own.
     pub fn of(setup: &Setup) -> Option<WholeLoop> {
         setup.control.as_ref()?;
-        let adapts = setup.agents.iter().any(|agent| !is_lagrangian(agent) && agent.estimates());
+        let along_targets = |index: usize, agent| !is_lagrangian(agent) || setup.tracks(index);
+        let mut agents = setup.agents.iter().enumerate();
+        let adapts = agents.any(|(index, agent)| agent.estimates() && along_targets(index, agent));
         WholeLoop::found(setup, &way(setup), adapts)
     }
 

@@ -1,5 +1,6 @@
 //! From links and joints as a file lists them to the moving bodies that the kernels walk.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use thiserror::Error;
@@ -202,8 +203,37 @@ impl Tree {
         }
         let mut theta: Vec<f64> = inertias.into_iter().flatten().collect();
         theta.extend(dampings);
-        Ok(Assembled { tree: Tree::new(bodies, damped, gravity), theta, moving, anchors })
+        let ends = ends(links, &anchors, bodies.len());
+        let tree = Tree { ends, ..Tree::new(bodies, damped, gravity) };
+        Ok(Assembled { tree, theta, moving, anchors })
     }
+
+    /// Where a moving body ends, in its frame: the origin of the farthest of the links that are held rigidly by it and hold none themselves, such
+    /// as a flange; `None` where there is none but at its own origin.
+    pub fn end_of(&self, body: usize) -> Option<[f64; 3]> {
+        self.ends.get(body).copied().flatten()
+    }
+}
+
+/// See [`Tree::end_of`].
+fn ends(links: &[LinkSpec], anchors: &[Anchor], bodies: usize) -> Vec<Option<[f64; 3]>> {
+    let mut holds = vec![false; links.len()];
+    for parent in links.iter().filter_map(|spec| spec.parent) {
+        if let Some(holds) = holds.get_mut(parent) {
+            *holds = true;
+        }
+    }
+    let square = |[x, y, z]: [f64; 3]| x * x + y * y + z * z;
+    let mut ends = vec![None; bodies];
+    for (anchor, _) in anchors.iter().zip(&holds).filter(|(_, holds)| !**holds) {
+        let at = anchor.x_body_link.translation;
+        if let Some(end) = anchor.body.and_then(|body| ends.get_mut(body))
+            && square(at) > end.map_or(0.0, square)
+        {
+            *end = Some(at);
+        }
+    }
+    ends
 }
 
 fn check_link(link: usize, spec: &LinkSpec) -> Result<(), TreeError> {

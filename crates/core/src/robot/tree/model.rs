@@ -35,6 +35,8 @@ pub struct Tree {
     pub(super) bodies: Vec<Body>,
     pub(super) drives: Drives,
     pub(super) gravity: [f64; 3],
+    /// Of each body that is held rigidly by it and holds nothing: the farthest; empty where no links are known.
+    pub(super) ends: Vec<Option<[f64; 3]>>,
 }
 
 /// One moving body.
@@ -225,7 +227,7 @@ impl Body {
 
 impl Tree {
     pub(super) fn new(bodies: Vec<Body>, damped: Vec<usize>, gravity: [f64; 3]) -> Self {
-        Tree { bodies, drives: Drives { damped, ..Drives::default() }, gravity }
+        Tree { bodies, drives: Drives { damped, ..Drives::default() }, gravity, ends: Vec::new() }
     }
 
     /// Number of joints, which is the number of moving bodies.

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use forwardstep::io::output::{Disagreement, LimitKind, LimitReached, Metrics, ending_sentence, names, stiff_words};
 use forwardstep::io::scenario::{LawTemplate, Scenario, Template, Tuning};
+use forwardstep::sim::quantity::with_power;
 use forwardstep::sim::recording::{BreakdownCause, Signal};
 use forwardstep::sim::{Ending, Setup, simulate};
 
@@ -295,8 +296,8 @@ fn too_many(setup: &Setup, mean_s: f64) -> Option<Went> {
         }
     };
     let what = format!(
-        "too stiff for a trial: its steps are about {step_s} s, so that a run of {end_s} s takes about {:.0e} of them; {why}{advice}",
-        end_s / mean_s
+        "too stiff for a trial: its steps are about {step_s} s, so that a run of {end_s} s takes about {} of them; {why}{advice}",
+        with_power(&format!("{:.0e}", end_s / mean_s))
     );
     Some(if own { Went::Hopeless(what) } else { Went::Badly(what) })
 }
@@ -314,7 +315,7 @@ fn about(value: f64) -> String {
     let digits = format!("{value:.1e}");
     match digits.parse::<f64>() {
         Ok(rounded) if rounded >= 1e-3 || rounded == 0.0 => rounded.to_string(),
-        _ => digits,
+        _ => with_power(&digits),
     }
 }
 

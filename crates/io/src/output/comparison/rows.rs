@@ -88,7 +88,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
             Ok(Cell::words(words::reference(&s.scenario, s.setup())))
         }),
         row(Simulated, "order", "order", order),
-        row(Simulated, "told", "told each other", |s| Ok(Cell::words(s.setup().transmits().join(", ")))),
+        row(Simulated, "told", "told each other", told),
         row(Simulated, "network", "network", |s| Ok(Cell::words(words::network(s.setup()))))
             .unless(alike(same_network)),
         row(Simulated, "start", "gap at the start", start).unless(alike(same_start)),
@@ -160,7 +160,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
         row(Observed, "input_jump", "input jumps by", input_jump),
         row(Observed, "first_jump", "first that jumps", first_jump),
         row(Observed, "rms_torque", "effort, rms τ", rms_torque),
-        row(Observed, "work_j", "effort, ∫ |τᵀq̇|", work),
+        row(Observed, "work_j", "effort, ∫ Σ |τⱼ q̇ⱼ|", work),
         row(Observed, "messages", "messages", messages),
     ]);
     rows
@@ -211,8 +211,16 @@ fn same_start(a: &Subject<'_>, b: &Subject<'_>) -> bool {
     starts(a) == starts(b)
 }
 
+fn told(s: &Subject<'_>) -> Result<Cell, Cell> {
+    if s.setup().network.schedule.graphs.iter().all(Vec::is_empty) {
+        return Err(Cell::none("no agent hears another"));
+    }
+    Ok(Cell::words(s.setup().transmits().join(", ")))
+}
+
 fn order(s: &Subject<'_>) -> Result<Cell, Cell> {
     match words::orders(s.setup()) {
+        None if s.setup().following().is_some() => Err(Cell::none("it is that of the design behind a leader")),
         None => Err(Cell::none("its reference dynamics have no roots")),
         Some((least, most)) if least == most => Ok(Cell::number(most as f64, "")),
         Some((least, most)) => Ok(Cell::words(format!("{least} to {most}"))),

@@ -186,7 +186,7 @@ impl<'a> Plots<'a> {
             panels.push(Panel {
                 title: String::new(),
                 x: Across::Time,
-                y: format!("{}{unit}", gap.formula()),
+                y: format!("{}{unit}", gap.formula(self.record.setup)),
                 log: true,
                 lines,
                 guide,

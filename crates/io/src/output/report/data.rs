@@ -8,7 +8,7 @@ use forwardstep_sim::trajectory::Path;
 use serde::Serialize;
 
 use super::super::decimate::Grid;
-use super::super::metrics::{DisagreementSeries, Gap, balance_residuals};
+use super::super::metrics::{DisagreementSeries, Gap, balance_residuals, keeps_balance};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -22,7 +22,7 @@ use super::single::{Origins, Singles};
 use crate::shapes::Solid;
 
 /// Points of a signal on the page, as far as space allows.
-const MOST_POINTS: usize = 2000;
+const MOST_POINTS: usize = 5000;
 /// Points of an estimate.
 const MOST_ESTIMATE_POINTS: usize = 500;
 /// Fewer would not show anything.
@@ -135,6 +135,26 @@ pub(super) struct Grids {
     pub(super) delay_series: usize,
     /// Of delays there are none.
     pub(super) origins: GridOrigins,
+    /// Which points are rows as they were recorded; absent where all are, as they are of the other grids.
+    pub(super) rows: GridRows,
+}
+
+/// Bits in base64, the lowest first.
+#[derive(Serialize, Default)]
+pub(super) struct GridRows {
+    main: Option<String>,
+    estimates: Option<String>,
+}
+
+impl GridRows {
+    pub(super) fn of(main: &Grid, estimates: Option<&Grid>) -> Self {
+        let bits = |grid: &Grid| {
+            let byte = |eight: &[bool]| eight.iter().rev().fold(0_u8, |byte, bit| byte << 1 | u8::from(*bit));
+            let bytes: Vec<u8> = grid.exact.chunks(8).map(byte).collect();
+            grid.exact.contains(&false).then(|| base64::engine::general_purpose::STANDARD.encode(bytes))
+        };
+        GridRows { main: bits(main), estimates: estimates.and_then(bits) }
+    }
 }
 
 /// What is to be added to some series of each grid.
@@ -211,10 +231,11 @@ impl Payload {
         let mut main = Series::new(Grid::new(table.t_s, &break_points, budget), table.t_s);
         if main.grid.decimated {
             notes.push(format!(
-                "For display, rows are gathered in buckets of which the least and the greatest value are kept: about {} of {} \
-                 points per signal. The tables have every row.",
-                main.grid.t_s.len(),
-                table.t_s.len()
+                "For display, rows are gathered in buckets, of which the first row is kept, and the least and the greatest value of \
+                 each signal. Of {} rows {} are here as they were recorded: in planes, and in the tables and CSVs of plots. The run's tables \
+                 have every row.",
+                table.t_s.len(),
+                main.grid.exact.iter().filter(|exact| **exact).count()
             ));
         }
 
@@ -240,7 +261,10 @@ impl Payload {
         for agent in 0..table.agents() {
             let v = table.column(agent, Signal::Lyapunov, 0);
             let dissipated = table.column(agent, Signal::Dissipation, 0);
-            let sum = v.zip(dissipated).map(|(v, d)| v.iter().zip(d).map(|(v, d)| v + d).collect::<Vec<_>>());
+            let sum = v
+                .zip(dissipated)
+                .filter(|_| keeps_balance(record.setup))
+                .map(|(v, d)| v.iter().zip(d).map(|(v, d)| v + d).collect::<Vec<_>>());
             let error = balance_residuals(table, agent).map(|e| e.iter().map(|e| e.abs()).collect::<Vec<_>>());
             index.lyapunov.push(v.map(|v| main.add(v, false)));
             index.balance_sum.push(sum.map(|sum| main.add(&sum, false)));
@@ -306,6 +330,7 @@ impl Payload {
                 main_series: main.numbers.count,
                 estimate_series: estimates.numbers.count,
                 delay_series: shown_delays.len(),
+                rows: GridRows::of(&main.grid, Some(&estimates.grid)),
                 origins: GridOrigins {
                     main: main.numbers.origins,
                     estimates: estimates.numbers.origins,

@@ -5,7 +5,7 @@ use forwardstep_sim::recording::{Ending, Signal};
 use maud::{Markup, html};
 
 use super::super::conclusion::Conclusion;
-use super::super::metrics::{Disagreement, Metrics};
+use super::super::metrics::{Absence, Disagreement, Metrics};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::text::{number, prose};
@@ -78,11 +78,12 @@ pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 Disagreement::Measured { last, .. } => {
                     (figure(&final_gap(setup), &number(last), &names::gap_unit(setup)))
                 }
+                Disagreement::Absent(Absence::FewerThanTwoAgents) => {}
                 Disagreement::Absent(_) => (figure(&final_gap(setup), "–", "")),
             }
             @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
             @if let Some(speed) = metrics.speed {
-                (figure("Largest recorded speed", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
+                (figure("Largest recorded speed, one axis", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
             }
             @let peaks = metrics.peak_torques.iter();
             @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {

@@ -22,7 +22,7 @@ mod stage;
 use std::time::Duration;
 
 use forwardstep_check::Footing;
-use forwardstep_check::derivation::explain;
+use forwardstep_check::derivation::{Explained, Explanation, Line, Subject, explain};
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -30,7 +30,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use self::families::Family;
 use self::interfaces::interfaces;
 use super::explanation::explanation_markup;
-use super::metrics::{Disagreement, Gap, Metrics};
+use super::formula::unicode;
+use super::metrics::{Absence, Disagreement, Gap, Metrics, keeps_balance};
 use super::names;
 use super::palette::{self, Ground};
 use super::record::RunRecord;
@@ -88,6 +89,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
         Disagreement::Absent(absence) => Some(absence),
         Disagreement::Measured { .. } => None,
     };
+    let explained = explain(record.setup);
     html! {
         (DOCTYPE)
         html lang="en" data-again-s=[again.map(|again| again.as_secs_f64().ceil())] {
@@ -113,10 +115,10 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (sections::verdicts(record, metrics, goes_on))
                     (practical::practical(record, metrics))
                     (predicted::section(record, metrics))
-                    (signals(record, payload.cascade))
+                    (signals(record, payload.cascade, absence == Some(Absence::FewerThanTwoAgents), &explained))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
-                    (explanation_markup(record.setup, &explain(record.setup), &Footing::of(record.setup, record.verdicts)))
+                    (explanation_markup(record.setup, &explained, &Footing::of(record.setup, record.verdicts)))
                     (sections::digital(record))
                     (injected::injected(record))
                     (sections::loads(record.setup, metrics))
@@ -145,8 +147,51 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
     .into_string()
 }
 
+/// The plot of all positions, which of one agent alone stands at the top.
+fn positions(setup: &Setup) -> Markup {
+    if turns(setup) {
+        card("position", "Attitudes", "unit quaternions q, o for the scalar part", "")
+    } else {
+        card("position", "Positions", "q", "")
+    }
+}
+
+/// Whether what moves are attitudes, by their units.
+fn turns(setup: &Setup) -> bool {
+    let axes = |signal| {
+        (0..setup.agents.len())
+            .flat_map(move |agent| (0..setup.agents[agent].robot.axes.len()).map(move |axis| (agent, axis, signal)))
+    };
+    let unit = |(agent, axis, signal)| names::unit(setup, agent, signal, axis);
+    !setup.agents.is_empty()
+        && axes(Signal::Position).map(unit).all(|unit| unit == "1")
+        && axes(Signal::Velocity).map(unit).any(|unit| unit == "rad/s")
+}
+
+/// What s is, of each design as it is explained.
+fn error_words(setup: &Setup, explained: &Explanation) -> String {
+    let of = |design: &Explained| {
+        let first = design.sections.iter().find(|section| section.subject == Subject::VirtualControl)?;
+        first.lines.iter().find_map(|line| match line {
+            Line::Formula(formula, _) => Some(unicode(formula)).filter(|text| text.starts_with('s')),
+            Line::Words(_) => None,
+        })
+    };
+    let mut all: Vec<String> = explained.designs.iter().filter_map(of).collect();
+    all.dedup();
+    match all.as_slice() {
+        [] => "s = q̇ − z".into(),
+        [one] => {
+            // What agents agree on is then their positions less these.
+            let away = if Gap::keeps_offsets(setup) { ", of positions less their offsets" } else { "" };
+            format!("{one}{away}")
+        }
+        _ => "s, as the explanation below defines it for each".into(),
+    }
+}
+
 /// The plots; the script fills their cards.
-fn signals(record: &RunRecord<'_>, cascade: Option<bool>) -> Markup {
+fn signals(record: &RunRecord<'_>, cascade: Option<bool>, is_alone: bool, explained: &Explanation) -> Markup {
     let agents = &record.setup.agents;
     let adaptive = agents.iter().any(|agent| agent.estimates());
     let columns = &record.outcome.recording.columns;
@@ -167,28 +212,32 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>) -> Markup {
             }
             noscript { p.note { "The plots need JavaScript; the same plots lie in " code { "plots/" } " as SVG." } }
             div.grid {
-                (card("position", "Positions", "q", ""))
+                @if !is_alone { (positions(record.setup)) }
                 @if recorded(Signal::Torque) { (card("torque", input, "τ, after any limit", "")) }
                 @if recorded(Signal::External) {
                     (card("external", external, by, ""))
                 }
+                @let (speed, letter) = if turns(record.setup) { ("Angular velocity", "ω") } else { ("Speed", "q̇") };
                 @if recorded(Signal::Reference(0)) {
-                    (card("velocity", "Speed and reference", "q̇, and z dashed", ""))
+                    (card("velocity", &format!("{speed} and reference"), &format!("{letter}, and z dashed"), ""))
                 } @else {
-                    (card("velocity", "Speed", "q̇", ""))
+                    (card("velocity", speed, letter, ""))
                 }
                 (card("plane", "One over another", "paths and phase planes", ""))
-                @if recorded(Signal::TrackingError) { (card("error", "Tracking error", "s = q̇ − z", "")) }
+                @if recorded(Signal::TrackingError) { (card("error", "Tracking error", &error_words(record.setup, explained), "")) }
                 (card("reference", "Reference derivatives", "ż and higher", ""))
                 @for family in Family::of(&record.outcome.recording) {
                     (card(&family.id(), &family.title, &family.letters, ""))
                 }
                 @if adaptive { (card("estimate", "Parameter estimates", "ϑ̂, the truth dashed", "no estimate was recorded")) }
-                @if let Some(guaranteed) = cascade {
+                @if let Some(guaranteed) = cascade.filter(|_| !is_alone) {
                     @let dashed = if guaranteed { "; dashed what is guaranteed for s ≡ 0, above which robots with tracking errors may lie" } else { "" };
-                    (card("cascade", "Interval of the cascade", &format!("max − min of all ψ{dashed}"), ""))
+                    (card("cascade", "Interval of the cascade", &format!("max − min of all ψ, each scaled to be a position at rest{dashed}"), ""))
                 }
-                @if recorded(Signal::Lyapunov) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
+                @if recorded(Signal::Lyapunov) {
+                    @if recorded(Signal::Dissipation) && keeps_balance(record.setup) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
+                    @else { (card("balance", "Lyapunov function", "V of each agent", "")) }
+                }
                 @if record.injected_course.is_some() { (card("injected", "V and what was injected", "of all agents together, by cause", "")) }
             }
             p.note.hint { "Drag across a plot to zoom all of them; double-click to see everything again." }
@@ -208,7 +257,7 @@ fn card(id: &str, title: &str, what: &str, empty: &str) -> Markup {
 
 /// Whether anybody ever hears anybody, or could.
 fn has_network(record: &RunRecord<'_>) -> bool {
-    Gap::of(record.setup) == Gap::Disagreement
+    (Gap::of(record.setup) == Gap::Disagreement && record.setup.agents.len() > 1)
         || record.setup.network.schedule.graphs.iter().any(|graph| !graph.is_empty())
 }
 
@@ -224,7 +273,7 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
                 div.head { h3 { "Active edges" " " span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
                 div.canvas {}
             }
-            article.card.plot data-plot="delay" data-empty="no edge has a delay" {
+            article.card.plot data-plot="delay" {
                 div.head { h3 { "Delays" " " span.by { "T(t)" } } div.pick {} }
                 div.canvas {}
             }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use forwardstep_sim::graph::Edge;
+use forwardstep_sim::schedule::Extent;
 use forwardstep_sim::setup::Setup;
 use maud::{Markup, html};
 use serde::Serialize;
@@ -36,6 +37,8 @@ pub(crate) struct Gantt {
     spans: Vec<(f64, f64, usize)>,
     /// Until when they go, where there are too many to draw all.
     drawn_until_s: Option<f64>,
+    /// How many spans come again and again, where all of them are drawn.
+    turn_of: Option<usize>,
     by_receiver: bool,
 }
 
@@ -57,7 +60,8 @@ impl Gantt {
         let row_of = |edge: &Edge| {
             if by_receiver { Some(edge.to) } else { edges.binary_search(&(edge.from, edge.to)).ok() }
         };
-        let mut gantt = Gantt { rows, bars: Vec::new(), spans: Vec::new(), drawn_until_s: None, by_receiver };
+        let mut gantt =
+            Gantt { rows, bars: Vec::new(), spans: Vec::new(), drawn_until_s: None, turn_of: None, by_receiver };
         // The bar of a row that goes on as long as nothing changes.
         let mut open: Vec<Option<usize>> = vec![None; gantt.rows.len()];
         for span in spans {
@@ -85,8 +89,12 @@ impl Gantt {
         if timeline.drawn_until_s.is_some() || gantt.spans.len() < spans.len() {
             let drawn_s = gantt.spans.last().map_or(0.0, |span| span.1);
             gantt.drawn_until_s = Some(drawn_s);
+            if let Extent::Period(count) = setup.network.schedule.known().extent {
+                gantt.turn_of = Some(count).filter(|count| (1..=gantt.spans.len()).contains(count));
+            }
+            let after = if gantt.turn_of.is_some() { "; after that the graphs take turns as before" } else { "" };
             notes.push(format!(
-                "The graph changes very often; which graph is in force, and who hears whom, is drawn until t = {} s.",
+                "The graph changes very often; which graph is in force, and who hears whom, is drawn until t = {} s{after}.",
                 text::number(drawn_s)
             ));
         }
@@ -167,7 +175,7 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
                     (circle(setup, graph))
                     figcaption {
                         strong { @if timeline.graphs.len() == 1 { "The graph" } @else { "Graph " (k + 1) } }
-                        " " (text::count(graph.len(), "edge"))
+                        " " @if graph.is_empty() { "no edge: nobody hears anybody" } @else { (text::count(graph.len(), "edge")) }
                         @if graph.len() > MOST_ARROWS { ", " (MOST_ARROWS) " of them drawn" }
                         @if timeline.graphs.len() > 1 {
                             ", in force " (text::number(timeline.in_force_s[k])) " s"

@@ -37,9 +37,12 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                         }
                     }
                 }
-                div.card {
-                    h3 { "Watched" " " span.by { "at rows of the recording" } }
-                    table.facts { tbody { (watched(record, metrics)) } }
+                @let watched = watched(record, metrics);
+                @if !watched.0.is_empty() {
+                    div.card {
+                        h3 { "Watched" " " span.by { "at rows of the recording" } }
+                        table.facts { tbody { (watched) } }
+                    }
                 }
             }
         }

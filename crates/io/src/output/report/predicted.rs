@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::super::conclusion::LEFT_OVER;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
-use super::super::prediction::{CourseFound, NEAR, PredictedCourse, PredictedRate, Predictions};
+use super::super::prediction::{CourseFound, NEAR, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
 use super::super::record::RunRecord;
 use super::super::text::{self, number, prose};
 use super::sections::last_tracking_error;
@@ -22,7 +22,8 @@ const MOST_AXES: usize = 32;
 
 /// The section; nothing where nothing is predicted.
 pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
-    let Some(prediction) = &record.prediction else { return html! {} };
+    let told = record.prediction.as_ref().filter(|prediction| !prediction.is_of_one_alone(record.setup));
+    let Some(prediction) = told else { return html! {} };
     let (setup, unit) = (record.setup, names::gap_unit(record.setup));
     html! {
         section #predicted {
@@ -165,6 +166,11 @@ fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String
 }
 
 fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
+    // Of many the largest, in their order.
+    let mut all: Vec<(usize, &PredictedTorque)> = course.peak_torques.iter().enumerate().collect();
+    all.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
+    all.truncate(MOST_TORQUES);
+    all.sort_by_key(|(place, _)| *place);
     let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
     html! {
         div.card.scroll {
@@ -175,7 +181,7 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
             } }
             table.numbers {
                 thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th { "estimate starts off by" } } }
-                tbody { @for peak in course.peak_torques.iter().take(MOST_TORQUES) {
+                tbody { @for (_, peak) in &all {
                     @let unit = text::unit(&names::unit(setup, peak.agent, Signal::Torque, peak.axis));
                     tr {
                         th { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
@@ -187,7 +193,7 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
                 } }
             }
             @if course.peak_torques.len() > MOST_TORQUES {
-                p.note { "The first " (MOST_TORQUES) " of " (course.peak_torques.len()) "; summary.json has all." }
+                p.note { "The largest " (MOST_TORQUES) " of " (course.peak_torques.len()) "; summary.json has all." }
             }
         }
     }

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use forwardstep_check::{Answer, Hypothesis, Report, Rigour};
+use forwardstep_check::{Answer, Hypothesis, Id, Report, Rigour};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::recording::{Drive, Ending, Signal};
+use forwardstep_sim::recording::{BreakdownCause, Drive, Ending, Outcome, Signal};
 use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::ending::ending_sentence;
-use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics};
+use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics, coarse_rows};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -67,8 +67,9 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                                     p { strong { (prose(&hypothesis.requires())) } " " em { (hypothesis.answer().words()) } }
                                     p.because {
                                         (prose(&hypothesis.because()))
-                                        @if hypothesis.answer() == Answer::Watched && record.outcome.ending == Ending::Completed {
-                                            "; this run reached its horizon"
+                                        @if hypothesis.answer() == Answer::Watched {
+                                            @if let Some(failed) = failed(record, hypothesis.id) { "; " strong.bad { (failed) } }
+                                            @else if record.outcome.ending == Ending::Completed { "; this run reached its horizon" }
                                         }
                                     }
                                     @if let Some(change) = hypothesis.change() {
@@ -107,6 +108,23 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                 }
             }
         }
+    }
+}
+
+/// That what is watched during the run failed in it, and when.
+pub(super) fn failed(record: &RunRecord<'_>, id: Id) -> Option<String> {
+    let Outcome { ending, statistics, .. } = record.outcome;
+    match (id, ending) {
+        (Id::RegularJacobian | Id::NonzeroThrust | Id::InputFactor, Ending::BrokeDown(breakdown))
+            if matches!(breakdown.cause, BreakdownCause::Vanished { .. }) =>
+        {
+            Some(format!("in this run it failed, at t = {} s", number(breakdown.t_s)))
+        }
+        (Id::SignGain, _) => {
+            let until_s = statistics.drive?.exceeds_until_s?;
+            Some(format!("in this run γ was too small until t = {} s, and large enough from then on", number(until_s)))
+        }
+        _ => None,
     }
 }
 
@@ -167,6 +185,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
                 (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ")"
             }))
         }
+        @if let Some(words) = coarse_rows(setup, record.outcome) { (fact("Rows", html! { (words) })) }
         (fact("Limits", html! {
             @if metrics.limits_reached.is_empty() { "none exceeded, of those that are known" }
             @else { a href="#limits" { (text::count(metrics.limits_reached.len(), "limit")) " reached or exceeded" } }
@@ -379,11 +398,11 @@ fn sign_words(record: &RunRecord<'_>, following: &Following) -> String {
 fn leader_words(setup: &Setup, following: &Following, drive: Drive) -> String {
     let leader = setup.leader().map_or("", |vertex| setup.vertex_name(vertex));
     let until = match drive.exceeds_until_s {
-        None => "and never reached γ".to_owned(),
-        Some(until_s) => format!("and was γ or more until t = {} s", number(until_s)),
+        None => "and never reached".to_owned(),
+        Some(until_s) => format!("and, until t = {} s, was not below", number(until_s)),
     };
     let (peak, peak_s, gamma) = (number(drive.peak), number(drive.peak_s), number(following.gain));
-    format!("{leader} leads; what drives it was at most {peak}, at t = {peak_s} s, {until}, which is {gamma}")
+    format!("{leader} leads; what drives it was at most {peak}, at t = {peak_s} s, {until} γ = {gamma}")
 }
 
 /// How it was computed, and from what.
@@ -423,6 +442,7 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                         }
                     }))
                     (fact("Exchanged", html! { @match setup.exchange {
+                        _ if setup.network.schedule.graphs.iter().all(Vec::is_empty) => "nothing: no agent hears another",
                         Exchange::Position => "positions",
                         Exchange::PositionVelocity => "positions and velocities",
                         Exchange::Composite => "one vector, y = ż + β z + α q",

@@ -11,7 +11,7 @@ use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::text;
 use super::super::timeline::{self, Timeline};
-use super::data::{DelayIndex, GridOrigins, Grids, Series, block};
+use super::data::{DelayIndex, GridOrigins, GridRows, Grids, Series, block};
 use super::network::{self, Gantt};
 use super::scene::Scene;
 use super::single::Origins;
@@ -113,6 +113,7 @@ pub(super) fn side_data(name: &str, record: &RunRecord<'_>) -> (SideIndex, Strin
             main_series: main.numbers.count,
             estimate_series: 0,
             delay_series: shown.len(),
+            rows: GridRows::of(&main.grid, None),
             origins: GridOrigins {
                 main: main.numbers.origins,
                 estimates: Origins::default(),
@@ -202,7 +203,7 @@ fn positions(table: &Table<'_>, main: &mut Series<'_>) -> Vec<Entry> {
         let high: Vec<f64> = (0..rows).map(|row| at(row).fold(f64::NEG_INFINITY, f64::max)).collect();
         let mut line = |values: &[f64], style| Line { series: main.add(values, false), style };
         Entry {
-            name: names::gap_words(table.setup, axis),
+            name: names::shared_axis_words(table.setup, axis),
             unit: text::units(owners.iter().map(|agent| names::unit(table.setup, *agent, Signal::Position, axis))),
             lines: vec![line(&mean, Style::Run), line(&low, Style::Band), line(&high, Style::Band)],
         }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::super::metrics::{Absence, Gap, Metrics};
 use super::super::record::RunRecord;
-use super::{card, header};
+use super::{card, header, positions};
 
 /// How fast time may pass, by its share of real time.
 const RATES: [(&str, &str); 6] = [("0.1", "⅒"), ("0.5", "½"), ("1", "1"), ("2", "2"), ("5", "5"), ("20", "20")];
@@ -76,7 +76,8 @@ pub(super) fn stage(record: &RunRecord<'_>, metrics: &Metrics, absence: Option<A
                     (header::promised(record))
                     (header::figures(record, metrics))
                 }
-                (card("disagreement", gap.name(), gap.formula(), absence.map_or("", Absence::words)))
+                @if absence == Some(Absence::FewerThanTwoAgents) { (positions(record.setup)) }
+                @else { (card("disagreement", gap.name(), gap.formula(record.setup), absence.map_or("", Absence::words))) }
                 div.card #graph-now {
                     div.head { h3 { "Who hears whom" " " span.by #graph-when {} } }
                     div #graph-picture {}

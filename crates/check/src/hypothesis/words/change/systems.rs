@@ -117,6 +117,12 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                     agent.name
                 )
             }
+            FactorEverywhere::Slopes => {
+                format!(
+                    "`robot.strict_feedback` for {}, where its equations allow that: its factor is ψ alone",
+                    agent.name
+                )
+            }
             FactorEverywhere::Fades | FactorEverywhere::Zero(_) | FactorEverywhere::Unknown => away_from_zero(agent),
         },
         KindEvidence::RankDeficient { .. } => "a start at which the Jacobian is not singular".into(),
@@ -164,7 +170,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
 }
 
 fn away_from_zero(agent: &Named) -> String {
-    format!("a factor for {} that keeps away from zero in every state, such as 2 + cos(x)", agent.name)
+    format!("a factor for {} that keeps away from zero in every state, such as 2 and the cosine of a state", agent.name)
 }
 
 pub(super) fn robot(evidence: &RobotEvidence) -> Option<String> {

@@ -43,6 +43,8 @@ pub(super) struct ArmScene {
     ends: Vec<(usize, [f64; 3])>,
     /// The point whose path is drawn: a joint, and the point in its frame.
     tip: Option<(usize, [f64; 3])>,
+    /// Whether where that is was estimated from the centre of mass.
+    guessed: bool,
     /// The lengths of all links together, m.
     reach: f64,
     /// Whether it moves in one upright plane.
@@ -52,7 +54,8 @@ pub(super) struct ArmScene {
 }
 
 impl ArmScene {
-    /// Of a tree; the tip is `tip` where the law has one, and the end of the last link otherwise.
+    /// Of a tree; the tip is `tip` where the law has one, and the end of the last link otherwise: the last of what it holds, or as far beyond its
+    /// centre of mass as a rod would end.
     pub(super) fn of_tree(tree: &Tree, theta: &[f64], tip: Option<(usize, [f64; 3])>) -> Result<ArmScene, LengthError> {
         let frames = (0..tree.joint_count()).map(|body| frame(tree, body)).collect::<Result<Vec<_>, _>>()?;
         let parents: Vec<Option<usize>> = tree.parents().collect();
@@ -70,15 +73,18 @@ impl ArmScene {
         };
         let joints: Vec<JointScene> = (0..frames.len()).map(joint).collect();
         let inner: f64 = joints.iter().map(|joint| size(joint.place.1)).sum();
+        let guess = |body: usize| beyond_centre(theta.get(OF_BODY * body..OF_BODY * (body + 1)), inner);
         let leaves = (0..joints.len()).filter(|body| !parents.contains(&Some(*body)));
         let ends = leaves.map(|body| match tip {
             Some((carried, at)) if carried == body => (body, at),
-            _ => (body, beyond_centre(theta.get(OF_BODY * body..OF_BODY * (body + 1)), inner)),
+            _ => (body, tree.end_of(body).unwrap_or_else(|| guess(body))),
         });
         let ends: Vec<(usize, [f64; 3])> = ends.collect();
         let outer: f64 = ends.iter().map(|end| size(end.1)).sum();
         let reach = inner + outer;
-        Ok(ArmScene { joints, tip: tip.or(ends.last().copied()), ends, reach, planar: false, parts: Vec::new() })
+        let last = ends.last().copied();
+        let guessed = tip.is_none() && last.is_some_and(|(body, _)| tree.end_of(body).is_none());
+        Ok(ArmScene { joints, tip: tip.or(last), guessed, ends, reach, planar: false, parts: Vec::new() })
     }
 
     /// Of the planar arm, whose plane stands upright.
@@ -97,6 +103,7 @@ impl ArmScene {
             joints: vec![joint(None, upright, 0.0), joint(Some(0), flat, inner)],
             ends: vec![end],
             tip: Some(end),
+            guessed: false,
             reach: inner + outer,
             planar: true,
             parts: Vec::new(),
@@ -215,6 +222,19 @@ mod tests {
                 near(tip(&arm, &q), true_motion.position);
             }
         }
+    }
+
+    /// The flange of a UR5e is 0.0996 m from its last joint, where a rod of its last link would end at twice that.
+    #[test]
+    fn regress_an_arm_ends_at_its_flange() {
+        let text = crate::urdf::shipped_robot("ur5e").unwrap();
+        let robot = crate::read_urdf(&crate::SourceText::new("ur5e", text), &crate::UrdfOptions::default()).unwrap();
+        let tree = robot.robot.kind.downcast::<std::sync::Arc<Tree>>().unwrap().clone();
+        let arm = ArmScene::of_tree(&tree, &robot.robot.theta, None).unwrap();
+        let (body, at) = arm.tip.unwrap();
+        assert_eq!(body, tree.joint_count() - 1);
+        assert!((size(at) - 0.0996).abs() < 1e-12 && !arm.guessed, "{at:?}");
+        assert!((0..body).all(|body| tree.end_of(body).is_none()));
     }
 
     #[test]

@@ -1,0 +1,177 @@
+//! What is said of runs and designs is so: of those that pass, that are cut off from each other, that nothing moves.
+
+use std::fs;
+
+use crate::support::{folder, forwardstep, stderr, stdout};
+
+/// Point masses on a line, from these places, under a known law.
+fn masses(places: &str, count: usize, end_s: &str, reference: &str, network: &str) -> String {
+    format!(
+        "format = 2\ntitle = \"masses\"\ntime = {{ end_s = {end_s}, record_every_s = 0.01 }}\n[[agents]]\nname = \"m\"\ncount = {count}\n\
+         robot.point_mass = {{ dimension = 1, mass_kg = 2 }}\nstart.position_m = {places}\n{reference}\n[law.known]\n[network]\n{network}\n\
+         [goal]\ndisagreement_below = 1e-2\n"
+    )
+}
+
+const SEVEN: &str = "[reference.consensus]\nroots_per_s = [1, 2, 1.5, 3, 2.5, 1.2, 2.2]\nexchange = \"position\"";
+
+/// Two masses that swing through each other were said to have agreed 10.39 s after the start, where they meet, at 0.2 m/s.
+#[test]
+fn regress_masses_that_pass_each_other_have_not_agreed() {
+    let folder = folder();
+    let said = |end_s: &str| {
+        let text = masses("[[0], [1]]", 2, end_s, SEVEN, "delay.constant_s = 0.2\nedges.ring = {}");
+        fs::write(folder.path().join("m.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["run", "m.toml", "--force"]).success())
+    };
+    let passing = said("10.445");
+    assert!(passing.contains("agreement is not reached by 10.445 s; "), "{passing}");
+    assert!(passing.contains("not agreed: ") && passing.contains("and so near only in passing"), "{passing}");
+    assert!(!passing.contains("settled after") && passing.contains("not yet, predicted not yet"), "{passing}");
+    let rested = said("80");
+    assert!(rested.contains("agreed: ") && rested.contains("settled to 1 % after 36.6"), "{rested}");
+}
+
+/// The last graph has no edge: what has not come together by then never does.
+#[test]
+fn regress_no_longer_run_is_advised_where_messages_reach_nobody() {
+    let folder = folder();
+    let network =
+        "switching = \"once\"\n[[network.phases]]\ndwell_s = 20\nedges.ring = {}\n[[network.phases]]\nedges = []";
+    let reference = "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"";
+    let text = masses("[[0], [1], [3]]", 3, "30", reference, network).replace("1e-2", "1e-3");
+    fs::write(folder.path().join("m.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "m.toml"]).code(1));
+    assert!(said.contains("violated [spanning-tree]"), "{said}");
+    assert!(!said.contains("time.end_s") && !said.contains("s more"), "{said}");
+}
+
+/// s is a thousandth of what is left, and γ too small.
+#[test]
+fn regress_robots_that_follow_their_references_are_not_blamed() {
+    let folder = folder();
+    let reference = "[leader]\nmotion.sinusoids = [{ offset = 0.3, waves = [{ amplitude = 0.6, rad_per_s = 0.8 }] }]\n[reference.leader]\n\
+                     design = \"swarm\"\nroots_per_s = [1, 1]\ncoupling = 2\ngain = 0.1";
+    let text = masses("[[0], [1]]", 2, "40", reference, "edges = [[\"leader\", \"m-1\"], [\"m-1\", \"m-2\"]]");
+    let text = text.replace("[law.known]", "[law.adaptive]").replace("disagreement_below", "error_below");
+    fs::write(folder.path().join("m.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "m.toml"]).code(1));
+    assert!(said.contains("violated") && !said.contains("robots do not follow their references"), "{said}");
+}
+
+/// A run of one sample, and one in which nothing moves, work with any period.
+#[test]
+fn regress_no_limit_of_sampling_is_measured_where_nothing_can_be() {
+    let folder = folder();
+    let reference = "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"";
+    let limit = |places: &str, end_s: &str| {
+        let text = masses(places, 2, end_s, reference, "edges.ring = {}") + "[control]\nsample_hz = 100\n";
+        fs::write(folder.path().join("m.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["sampling-limit", "m.toml"]).code(1))
+    };
+    assert!(limit("[[0], [1]]", "0.01").contains("measured   – ms: a run has fewer than ten samples"));
+    assert!(limit("[[1], [1]]", "10").contains("measured   – ms: nothing has to move"));
+}
+
+/// A mass that adapts along its target runs away at periods far below those at which the damping alone does.
+#[test]
+fn regress_the_rule_for_periods_knows_of_adaptation_along_targets() {
+    let folder = folder();
+    let text = "format = 2\ntitle = \"m\"\ntime.end_s = 40\n[[agents]]\nname = \"m\"\nrobot.point_mass = { dimension = 2, mass_kg = 3 }\n\
+                start.position_m = [1, -1]\ntarget.formulas = [\"sin(t)\", \"0.5*cos(0.7*t)\"]\n[reference.tracking]\nroots_per_s = [1, 2]\n\
+                [law.adaptive]\n[control]\nsample_hz = 100\n[goal]\nerror_below = 1e-2\n";
+    fs::write(folder.path().join("m.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["sampling-limit", "m.toml"]).success());
+    let of = |what: &str| -> f64 {
+        let line = said.lines().find(|line| line.trim_start().starts_with(what)).unwrap_or_else(|| panic!("{said}"));
+        line.split_whitespace().nth(1).and_then(|number| number.parse().ok()).unwrap_or_else(|| panic!("{line}"))
+    };
+    let (rule, measured) = (of("rule"), of("measured"));
+    assert!((0.9..1.1).contains(&(rule / measured)), "{said}");
+}
+
+/// What a desired design is, is found whatever root stands first; and it is promised what its name is.
+#[test]
+fn regress_a_desired_design_is_recognised_whatever_root_is_first() {
+    let folder = folder();
+    let check = |own: &str, coupling: &str, heard: &str, command: &str| {
+        let reference =
+            format!("[reference.desired]\npolynomial = {own}\ncoupling_polynomial = {coupling}\nheard = {heard}");
+        let network =
+            "delay.piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0.4], period_s = 2 }\nedges.ring = {}";
+        fs::write(folder.path().join("m.toml"), masses("[[0], [1], [3]]", 3, "20", &reference, network)).unwrap();
+        let assert = forwardstep(&folder, &[command, "m.toml"]);
+        format!("{}{}", stdout(&assert), stderr(&assert))
+    };
+    let roots = |roots: &str| format!("{{ integrators = 1, roots_per_s = {roots} }}");
+    for first in ["[1, 2]", "[2, 1]"] {
+        let said = check(&roots(first), "{ roots_per_s = [1, 2] }", "[2, 1]", "check");
+        assert!(said.contains("(a5)") && said.contains("all in all: holds"), "{said}");
+        let said = check(&roots(first), "{ roots_per_s = [1, 2] }", "[2, 2]", "check");
+        assert!(said.contains("(a5)") && said.contains("all in all: holds"), "{said}");
+    }
+    let said = check(&roots("[1, 2]"), "{ roots_per_s = [1, 2] }", "[2, 3]", "check");
+    assert!(said.contains("by comparison of polynomials") && said.contains("not shown"), "{said}");
+    let said = check("[0, 2, 3]", "[2, 3, 1]", "[2]", "check");
+    assert!(said.contains("given by coefficients, of which no roots are computed"), "{said}");
+    let said = check(&roots("[1, 2]"), "{ roots_per_s = [1, 2] }", "[2]", "smoothness");
+    assert!(said.contains("promised: no jump") && !said.contains("promised: nothing"), "{said}");
+}
+
+/// The factor of a chain in pure feedback is no ψ alone, and no other ψ makes more known of it.
+#[test]
+fn regress_no_other_psi_is_advised_for_slopes() {
+    let folder = folder();
+    let text = "format = 2\ntitle = \"p\"\ntime.end_s = 10\n[[agents]]\nname = \"p\"\ncount = 2\nrobot.pure_feedback = { known = [\"x2 + 0.2*x2^3\", \"0\"], \
+                regressors = [[\"x1\"], [\"0\"]], parameters = [0.4], psi = \"2 + cos(x1)\" }\nstart.position = [[1], [0]]\n[reference.consensus]\n\
+                roots_per_s = [1, 2]\nexchange = \"position\"\n[law.adaptive_backstepping]\n[network]\nedges.ring = {}\n";
+    fs::write(folder.path().join("p.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["check", "p.toml"]));
+    assert!(said.contains("it is ψ times the slopes") && said.contains("`robot.strict_feedback` for p-1"), "{said}");
+    assert!(!said.contains("cosine"), "{said}");
+}
+
+/// Values that are small, and times, have digits.
+#[test]
+fn regress_what_is_small_has_digits() {
+    let folder = folder();
+    let reference = "[reference.consensus]\nroots_per_s = [1000, 2000]\nexchange = \"position\"";
+    let text =
+        masses("[[0], [1e-6]]", 2, "0.05", reference, "edges.ring = {}").replace("every_s = 0.01", "every_s = 1e-5");
+    fs::write(folder.path().join("m.toml"), text.replace("below = 1e-2", "below = 1e-9")).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "m.toml"]));
+    assert!(said.contains("0.000000500"), "{said}");
+    let settled = said.lines().find(|line| line.contains("settled to 1 % ")).unwrap();
+    assert!(!settled.contains(" 0.00 s"), "{settled}");
+    // Rows that are far apart beside steps hide peaks.
+    let text = masses("[[0], [1]]", 2, "60", &reference.replace("[1000, 2000]", "[1, 2]"), "edges.ring = {}");
+    for (every, coarse) in [("5", true), ("0.01", false)] {
+        fs::write(folder.path().join("m.toml"), text.replace("every_s = 0.01", &format!("every_s = {every}"))).unwrap();
+        let said = stdout(&forwardstep(&folder, &["run", "m.toml", "--force"]));
+        assert_eq!(said.contains("peaks and limits between rows are not seen"), coarse, "{said}");
+    }
+}
+
+/// What was watched and failed is said to have failed, and who leads is not among those that follow.
+#[test]
+fn regress_what_failed_in_a_run_is_said_beside_its_hypothesis() {
+    let folder = folder();
+    let said = stdout(&forwardstep(&folder, &["run", "pilot-ship", "--out", "ship"]).success());
+    let words = said.lines().find(|line| line.trim_start().starts_with("in words")).unwrap();
+    assert!(
+        words.contains("following: ") && words.contains(" from pilot, and pilot 0.0017 m from its target, at most"),
+        "{words}"
+    );
+    let page = fs::read_to_string(folder.path().join("ship/report.html")).unwrap();
+    assert!(page.contains("in this run γ was too small until t = 44.36 s"));
+    // Of a chain s is another difference than of a robot, and an attitude has no speed.
+    forwardstep(&folder, &["run", "strict-feedback", "--out", "chain"]);
+    assert!(fs::read_to_string(folder.path().join("chain/report.html")).unwrap().contains("s_i = x_i − z_i</span>"));
+    forwardstep(&folder, &["run", "theorem-7", "--out", "craft"]);
+    let page = fs::read_to_string(folder.path().join("craft/report.html")).unwrap();
+    assert!(
+        page.contains("unit quaternions")
+            && page.contains("Angular velocity and reference")
+            && page.contains("nothing: no agent hears another")
+    );
+}
