@@ -46,7 +46,7 @@ pub fn settled(t_s: &[f64], disagreement: &[f64]) -> Settled {
 const STAYS: f64 = 0.02;
 
 /// Whether what is at most `bound` at the last row is so only in passing: it was so for as long before, and left again, or it moves so fast that it
-/// would not be for [`STAYS`] of the time that it took.
+/// would not be for a fiftieth of the time that it took.
 ///
 /// What decays at a rate r to a hundredth takes 4.6/r, and moves by 0.09 of its bound in that share of it; what swings through zero moves by
 /// a multiple of its bound.
