@@ -237,7 +237,7 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     assert!(why.ends_with("1000 1/s: raise `max_step_s`, loosen the tolerances, or raise the budget."), "{why}");
     setup.solver.method = Method::Fixed { step_s: 1e-8 };
     let (head, why) = sentence(&setup, 1e-8, 1e3, None);
-    assert!(head.contains("arm-2.dq.2 moves fastest in steps of 1e-8 s"), "{head}");
+    assert!(head.contains("arm-2.dq.2 moves fastest in steps of 1 × 10⁻⁸ s"), "{head}");
     assert!(why.ends_with("1000 1/s: raise `step_s`, or raise the budget."), "{why}");
 }
 
