@@ -203,6 +203,11 @@ impl Network {
         self.used_delays().map(|index| self.delays[index].max_s()).fold(0.0, f64::max)
     }
 
+    /// Whether an agent ever hears another.
+    pub fn has_edges(&self) -> bool {
+        self.schedule.graphs.iter().any(|graph| !graph.is_empty())
+    }
+
     /// Indices of the delays that some edge of some graph refers to, rising.
     pub fn used_delays(&self) -> impl Iterator<Item = usize> + '_ {
         let mut used = vec![false; self.delays.len()];

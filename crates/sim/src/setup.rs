@@ -46,6 +46,11 @@ impl Setup {
         })
     }
 
+    /// The agent that leads the others, if one does.
+    pub fn leading_agent(&self) -> Option<usize> {
+        self.leader().filter(|leader| *leader < self.agents.len())
+    }
+
     /// What leads an agent, by its number: what leads all of them, but for an agent that leads the others, which follows a target.
     pub fn reference_of(&self, agent: usize) -> &dyn ReferenceDynamics {
         if self.leader() == Some(agent) { &Tracking } else { &*self.reference }
@@ -69,8 +74,11 @@ impl Setup {
         true
     }
 
-    /// What a message holds, in words.
+    /// What a message holds, in words; nothing where no agent hears another.
     pub fn transmits(&self) -> Vec<&'static str> {
+        if !self.network.has_edges() {
+            return Vec::new();
+        }
         let told = match self.following().map(|following| following.design) {
             Some(FollowingDesign::Differentiable) => Some("acceleration"),
             Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {

@@ -39,7 +39,7 @@ pub(super) fn check(setup: &Setup, desired: &Desired) -> Report {
         None if desired.follows_target => vec![Hypothesis::new(Id::DesiredDynamics, stability(desired))],
         None => vec![Hypothesis::new(Id::DesiredDynamics, unknown(setup, desired))],
     };
-    if desired.follows_target && setup.network.schedule.graphs.iter().all(Vec::is_empty) {
+    if desired.follows_target && !setup.network.has_edges() {
         let report = own_targets::check(setup);
         return Report { hypotheses: said.into_iter().chain(report.hypotheses).collect(), ..report };
     }

@@ -120,14 +120,14 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
         }
     });
     let accepted = format!("{}at most {:.2e} remains at the end", bounded(found.peak_error, ", and "), found.remains);
-    let runs = found.trials.len();
+    let runs = if found.trials.len() == 1 { "1 run".to_owned() } else { format!("{} runs", found.trials.len()) };
     let least = if found.remark == Some(LimitRemark::LongestTried) { "at least " } else { "" };
     let remark = found.remark.map_or_else(String::new, |remark| format!("; {}", remark.words()));
     console.line(match (found.measured_s, found.remark) {
         (Some(measured_s), _) => {
-            format!("  measured   {least}{} ms: {accepted}; {runs} runs{remark}", to_digits(1e3 * measured_s, 4))
+            format!("  measured   {least}{} ms: {accepted}; {runs}{remark}", to_digits(1e3 * measured_s, 4))
         }
-        (None, None) => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs} runs"),
+        (None, None) => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs}"),
         (None, Some(remark)) => format!("  measured   – ms: {}", remark.words()),
     });
 }

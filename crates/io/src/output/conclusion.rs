@@ -5,7 +5,7 @@ use forwardstep_check::{Answer, Id, RECOMMENDED_MARGIN, Report, SamplingMargin};
 use forwardstep_sim::recording::{ClippedSamples, Ending, Signal};
 use forwardstep_sim::setup::Setup;
 
-use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater, leads};
+use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
 use super::metrics::Metrics;
 use super::names::{agent_name, gap_unit_on, gap_words, unit};
 use super::prediction::{PredictedCourse, PredictedRate, Predictions};
@@ -146,7 +146,9 @@ impl End {
             });
             all.reduce(|a, b| if greater(a.0, b.0).to_bits() == a.0.to_bits() { a } else { b })
         };
-        let led = leads(table.setup)
+        let led = table
+            .setup
+            .leading_agent()
             .filter(|_| kind == Gap::Error)
             .and_then(|leader| Some([errors(&|agent| agent == leader)?, errors(&|agent| agent != leader)?]));
         Some(End { kind, axis, agents: agents_named, gap, led, speed })
@@ -166,7 +168,7 @@ impl End {
             (Gap::Disagreement, _) => ("agreed", format!("{size} apart")),
             (Gap::Error, true) => match errors {
                 Some([(own, own_axis), (others, axis)]) => {
-                    let leader = leads(setup).unwrap_or(first);
+                    let leader = setup.leading_agent().unwrap_or(first);
                     let [own, others] = [(own, own_axis), (others, axis)]
                         .map(|(size, axis)| with_unit(*size, gap_unit_on(setup, first, *axis)));
                     let name = agent_name(setup, leader);

@@ -48,7 +48,9 @@ impl Gap {
             }
             (Gap::Disagreement, true) => "max |qᵢ − qⱼ| of any coordinate",
             (Gap::Disagreement, false) => "max |qᵢ − qⱼ|",
-            (Gap::Error, _) if leads(setup).is_some() => "max |error| of any coordinate, of the leader from its target",
+            (Gap::Error, _) if setup.leading_agent().is_some() => {
+                "max |error| of any coordinate, of the leader from its target"
+            }
             (Gap::Error, true) => "max |error| of any coordinate",
             (Gap::Error, false) => "max |error|",
         }
@@ -58,11 +60,6 @@ impl Gap {
     pub fn keeps_offsets(setup: &Setup) -> bool {
         Gap::of(setup) == Gap::Disagreement && setup.agents.iter().any(|agent| agent.target.is_some())
     }
-}
-
-/// The agent that leads the others.
-pub(super) fn leads(setup: &Setup) -> Option<usize> {
-    setup.leader().filter(|leader| *leader < setup.agents.len())
 }
 
 /// max |q_i − q_j| over agents and axes, less their offsets, or max |error| where agents have targets; rad or m. Or why

@@ -191,7 +191,7 @@ impl Predictions {
         }
     }
 
-    /// Whether it says no more than that one agent alone has nobody to agree with.
+    /// Whether it says no more than that one agent alone has none to agree with.
     pub fn is_of_one_alone(&self, setup: &Setup) -> bool {
         setup.agents.len() < 2 && self.course().is_none()
     }

@@ -6,7 +6,7 @@ use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::injected::{Injected, InjectedCourse};
-use super::metrics::Metrics;
+use super::metrics::{Gap, Metrics};
 use super::prediction::Predictions;
 use crate::scenario::{Goal, InputFile};
 use crate::shapes::Shapes;
@@ -61,7 +61,7 @@ impl RunRecord<'_> {
 
     /// Whether agents agree on where they are less offsets of their own.
     pub(crate) fn keeps_offsets(&self) -> bool {
-        !self.setup.all_track() && self.setup.agents.iter().any(|agent| agent.target.is_some())
+        Gap::keeps_offsets(self.setup)
     }
 
     /// Whether somebody ended the run before its horizon, so that nothing is known of what would have come.

@@ -106,8 +106,6 @@ pub struct SamplingLimit {
 pub enum LimitRemark {
     /// No longer period was tried: with one a run would have fewer than ten samples.
     LongestTried,
-    /// The run has fewer than ten samples with a period that is short by the rule.
-    ShortRun,
     /// Agents start where they are to be, and stay, whatever the period is.
     NothingMoves,
 }
@@ -118,9 +116,6 @@ impl LimitRemark {
         match self {
             LimitRemark::LongestTried => {
                 "longer ones were not tried: they would leave a run fewer than ten samples; let `time.end_s` be longer"
-            }
-            LimitRemark::ShortRun => {
-                "a run has fewer than ten samples with any period worth trying; let `time.end_s` be longer"
             }
             LimitRemark::NothingMoves => "nothing has to move, whatever the period is; let agents start elsewhere",
         }
@@ -182,7 +177,8 @@ impl SamplingLimit {
     ) -> Result<SamplingLimit, SetupError> {
         let rule = deployment.rule(setup);
         let stated_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
-        let first_s = rule.map_or(stated_s, |rule| rule.period_s / FINER);
+        let longest_s = setup.time.end_s / FEWEST_SAMPLES;
+        let first_s = rule.map_or(stated_s, |rule| rule.period_s / FINER).min(longest_s);
         let first_s = first_s.max(1.001 * deployment.delay_s(setup, first_s));
         let mut trials = Vec::new();
         let mut run = |period_s: f64| {
@@ -207,12 +203,10 @@ impl SamplingLimit {
         let peak_error = accepted.peak_error.unwrap_or((LARGER * first.peak_error).max(first.peak_reference));
         let remains = accepted.remains.unwrap_or((LARGER * first.remains).max(REMAINS * first.initial));
         let works = |trial: Trial| trial.peak_error <= peak_error && trial.remains <= remains;
-        let most_s = (setup.time.end_s / FEWEST_SAMPLES).min(LONGEST * first_s);
+        let most_s = longest_s.min(LONGEST * first_s).max(first_s);
         // Of what is accepted by its user something may be measured all the same.
         let is_still = accepted == Accepted::default() && first.initial == 0.0 && remains == 0.0;
-        let (measured_s, remark) = if first_s > most_s {
-            (None, Some(LimitRemark::ShortRun))
-        } else if is_still {
+        let (measured_s, remark) = if is_still {
             (None, Some(LimitRemark::NothingMoves))
         } else if settles(first) && works(first) {
             let (found_s, is_longest) = bisect(first_s, most_s, |period_s| Ok(works(run(period_s)?)))?;
@@ -231,12 +225,12 @@ fn bisect(
     mut works: impl FnMut(f64) -> Result<bool, SetupError>,
 ) -> Result<(f64, bool), SetupError> {
     let mut high_s = (4.0 * low_s).min(most_s);
-    while works(high_s)? {
+    while low_s < most_s && works(high_s)? {
         low_s = high_s;
-        if high_s >= most_s {
-            return Ok((low_s, true));
-        }
         high_s = (2.0 * high_s).min(most_s);
+    }
+    if low_s >= most_s {
+        return Ok((low_s, true));
     }
     while high_s > (1.0 + TOLERANCE) * low_s {
         let middle_s = 0.5 * (low_s + high_s);

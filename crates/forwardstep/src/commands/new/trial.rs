@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use forwardstep::io::output::{Disagreement, LimitKind, LimitReached, Metrics, ending_sentence, names, stiff_words};
 use forwardstep::io::scenario::{LawTemplate, Scenario, Template, Tuning};
-use forwardstep::sim::quantity::with_power;
+use forwardstep::sim::quantity::{about, with_power};
 use forwardstep::sim::recording::{BreakdownCause, Signal};
 use forwardstep::sim::{Ending, Setup, simulate};
 
@@ -244,7 +244,8 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
         (None, true) => "from the target",
         (None, false) => "apart",
     };
-    let words = [about(last), names::gap_unit(setup), from.to_owned()].into_iter().filter(|word| !word.is_empty());
+    let words =
+        [about(last).to_string(), names::gap_unit(setup), from.to_owned()].into_iter().filter(|word| !word.is_empty());
     let gap = words.collect::<Vec<_>>().join(" ");
     if last <= MARGIN * goal {
         let leaves = metrics.limits_reached.iter().find(|limit| limit.kind == LimitKind::Position);
@@ -308,15 +309,6 @@ fn one_digit(value: f64) -> f64 {
     let digit = (value / 10.0_f64.powf(exponent)).ceil();
     // A product with a power of ten has more digits than the number that is meant.
     format!("{digit}e{exponent}").parse().unwrap_or(value)
-}
-
-/// A number of two digits.
-fn about(value: f64) -> String {
-    let digits = format!("{value:.1e}");
-    match digits.parse::<f64>() {
-        Ok(rounded) if rounded >= 1e-3 || rounded == 0.0 => rounded.to_string(),
-        _ => with_power(&digits),
-    }
 }
 
 #[cfg(test)]

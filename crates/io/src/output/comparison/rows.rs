@@ -212,10 +212,10 @@ fn same_start(a: &Subject<'_>, b: &Subject<'_>) -> bool {
 }
 
 fn told(s: &Subject<'_>) -> Result<Cell, Cell> {
-    if s.setup().network.schedule.graphs.iter().all(Vec::is_empty) {
-        return Err(Cell::none("no agent hears another"));
+    match s.setup().transmits().as_slice() {
+        [] => Err(Cell::none("no agent hears another")),
+        told => Ok(Cell::words(told.join(", "))),
     }
-    Ok(Cell::words(s.setup().transmits().join(", ")))
 }
 
 fn order(s: &Subject<'_>) -> Result<Cell, Cell> {

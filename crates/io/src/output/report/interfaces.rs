@@ -17,8 +17,7 @@ struct Group<'a> {
 
 /// A table of what is measured and what is transmitted, with the traffic of one edge.
 pub(crate) fn interfaces(setup: &Setup) -> Markup {
-    let heard = setup.network.schedule.graphs.iter().any(|graph| !graph.is_empty());
-    let transmits = if heard { setup.transmits() } else { Vec::new() };
+    let transmits = setup.transmits();
     html! {
         section #interfaces {
             h2 { "Measured and transmitted" }

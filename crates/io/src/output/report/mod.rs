@@ -257,8 +257,7 @@ fn card(id: &str, title: &str, what: &str, empty: &str) -> Markup {
 
 /// Whether anybody ever hears anybody, or could.
 fn has_network(record: &RunRecord<'_>) -> bool {
-    (Gap::of(record.setup) == Gap::Disagreement && record.setup.agents.len() > 1)
-        || record.setup.network.schedule.graphs.iter().any(|graph| !graph.is_empty())
+    (Gap::of(record.setup) == Gap::Disagreement && record.setup.agents.len() > 1) || record.setup.network.has_edges()
 }
 
 fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {

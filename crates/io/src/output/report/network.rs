@@ -175,7 +175,7 @@ pub(crate) fn graphs(setup: &Setup, timeline: &Timeline<'_>) -> Markup {
                     (circle(setup, graph))
                     figcaption {
                         strong { @if timeline.graphs.len() == 1 { "The graph" } @else { "Graph " (k + 1) } }
-                        " " @if graph.is_empty() { "no edge: nobody hears anybody" } @else { (text::count(graph.len(), "edge")) }
+                        " " @if graph.is_empty() { "no edge: no agent hears another" } @else { (text::count(graph.len(), "edge")) }
                         @if graph.len() > MOST_ARROWS { ", " (MOST_ARROWS) " of them drawn" }
                         @if timeline.graphs.len() > 1 {
                             ", in force " (text::number(timeline.in_force_s[k])) " s"

@@ -442,7 +442,7 @@ pub(crate) fn provenance(record: &RunRecord<'_>) -> Markup {
                         }
                     }))
                     (fact("Exchanged", html! { @match setup.exchange {
-                        _ if setup.network.schedule.graphs.iter().all(Vec::is_empty) => "nothing: no agent hears another",
+                        _ if !setup.network.has_edges() => "nothing: no agent hears another",
                         Exchange::Position => "positions",
                         Exchange::PositionVelocity => "positions and velocities",
                         Exchange::Composite => "one vector, y = ż + β z + α q",
