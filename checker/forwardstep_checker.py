@@ -664,7 +664,7 @@ CHAIN_LAWS, FIRST_ORDER = ("linearising", "linear_adaptive", "immersion", "adapt
 LED = dict(differentiable="theorem-9", without_acceleration="remark-12", swarm="swarm", composite="composite", observer="leader-observer")
 
 OTHER_SETTINGS = (" estimate_start estimate_start_kg floor design yaw thrust_start_n rate_bandwidth_per_s end_effector kinematic_start "
-                  "bounds determinant_floor antiderivatives null_space tip_velocity bias_m_s2")
+                  "bounds estimate_bounds determinant_floor antiderivatives null_space tip_velocity bias_m_s2")
 REFERENCE = "roots_per_s exchange manipulability_gain filter_s acceleration_limit design coupling gain sign sign_period_s alpha beta"
 DESIRED = "polynomial coupling_polynomial heard follows_target written_in nonlinear stable_because input_to_state_stable_because"
 AGENT = "name count robot parameter_variation start reference law target enforce_limits"
@@ -1104,7 +1104,7 @@ def requirements(scenario):
         (any(a.body.get("parameters") for a in adaptive), "bounded-regressors"), (scenario.polynomial, "desired-dynamics"),
         (any(a.pushes and a.robot.endswith("feedback") for a in chains), "matched-disturbance"), (control is not None, "continuous-time"),
         (any(not a.tracks for a in lagrangian) or tips, "bounded-dynamics"), (reference == "backstepping", "measured-derivative"),
-        (any("bounds" in a.settings() for a in agents if a.law != "task_space"), "parameters-within-bounds"),
+        (any(map(bounds_of, agents)), "parameters-within-bounds"),
         (True, "applied-torque" + " desired-design" * scenario.desired), (control is not None and inexact(control), "exact-measurements"),
         (control is not None and "message_timeout_s" in control, "messages-in-time")]
     found = {(each, "") for condition, ids in asked if condition for each in ids.split()}
@@ -1447,15 +1447,15 @@ def planar(body):
     return m, l_, of.get("com_m", [x / 2 for x in l_]), of.get("inertia_kg_m2", [m[k] * l_[k] ** 2 / 12 for k in (0, 1)])
 
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
+def bounds_of(agent): return agent.settings().get("estimate_bounds" if agent.law == "task_space" else "bounds")
+
 def bounds_hold(agent):
-    kind, body = chosen(agent.settings().get("bounds", {"within": 1}), "bounds", ("within", "given"), "bounds")
+    kind, body = chosen(bounds_of(agent) or {"within": 1}, "bounds", ("within", "given"), "bounds")
     if kind == "within": return exact(body, "within") > 0
     plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
     decided(plain, "the parameters of this robot are not computed here")
     (lower,), (upper,) = body["lower"], body["upper"]
     return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
-
-def parameters_hold(scenario): return all(bounds_hold(agent) for agent in scenario.agents if agent.law != "task_space")
 
 # Lengths that are uncertain within the bounds that their estimates keep.
 def lengths_hold(scenario, agent):
@@ -1528,12 +1528,12 @@ TEXT = {(each, "text"): so for each, so in {
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
     "shared-design": lambda s, _: s.reference == "leader", "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
     "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
-    "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: parameters_hold(s),
+    "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: all(map(bounds_hold, s.agents)),
     "target-at-rest": lambda _, own: all(map(rests, own)), "lengths-within-bounds": lambda s, own: all(lengths_hold(s, a) for a in own),
     "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired,
     "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs))}.items()} | {
     ("lengths-within-bounds", "outside"): lambda s, own: not all(lengths_hold(s, agent) for agent in own),
-    ("parameters-within-bounds", "outside"): lambda s, _: not parameters_hold(s), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
+    ("parameters-within-bounds", "outside"): lambda s, _: not all(map(bounds_hold, s.agents)), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
     # Of (3) and (23) delays may jump with the phases.
     ("fixed-graph", "one-graph"): lambda s, _: s.fixed(delays=False) and not s.varying() if s.reference == "pure_integral" else s.fixed(),
     ("common-first-root", "constant"): lambda s, _: all_constant(s), ("constant-weights", "text"): lambda s, _: not s.varying(),

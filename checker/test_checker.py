@@ -1283,6 +1283,7 @@ class FalseProofs(unittest.TestCase):
             self.rejected("bounds", "parameters-within-bounds", "by the text", lambda entry: None, bounds)
         for none in ("0", "-0.1"):
             self.rejected("friction", "parameters-within-bounds", "by the text", lambda entry: None, ("within = 0.3", f"within = {none}"))
+            self.rejected("tip-velocity", "parameters-within-bounds", "by the text", lambda entry: None, ("within = 0.3", f"within = {none}"))
         unknown = ("law.adaptive.bounds", "parameter_variation = { seed = 1, relative = 0.1 }\nlaw.adaptive.bounds")
         judged, found = self.judged("bounds", "parameters-within-bounds", lambda entry: None, unknown)
         self.assertIn((checker.UNCHECKED, "the parameters of this robot are not computed here"), judged, found)

@@ -73,7 +73,7 @@ return [first[0] === later[0], first[1] !== later[1], later[0] !== turned[0], la
 
 def numbers(browser, plot):
     rows = list(csv.DictReader(io.StringIO(value(browser, f"s.table('{plot}')"))))
-    return [{key.rsplit(" in ", 1)[0]: float(text) for key, text in row.items() if text} for row in rows]
+    return [{key.rsplit(" in ", 1)[0].split(" · ")[0]: float(text) for key, text in row.items() if text} for row in rows]
 
 
 def paths(browser, name):

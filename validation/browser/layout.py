@@ -263,7 +263,7 @@ def rows_as_recorded(browser, page, name, joint):
     recorded = {float(row["t_s"]): row for row in csv.DictReader(page.with_name("trajectory.csv").open())}
     for plot, letter in [("torque", "tau"), ("position", "q")]:
         head, *rows = csv.reader(io.StringIO(value(browser, f"s.table('{plot}')")))
-        columns = [f"{agent.rsplit(' in ', 1)[0]}.{letter}.{joint}" for agent in head[1:]]
+        columns = [f"{agent.split(' · ')[0].rsplit(' in ', 1)[0]}.{letter}.{joint}" for agent in head[1:]]
         far = lambda row: any(abs(float(a) - float(recorded[float(row[0])][b])) > 1e-5 * max(1.0, abs(float(a))) for a, b in zip(row[1:], columns))  # noqa: E731
         wrong = [row[0] for row in rows if float(row[0]) not in recorded or far(row)]
         expect(100 < len(rows) < len(recorded) and not wrong, f"{name}: {plot} has {len(rows)} of {len(recorded)} rows, wrong at {wrong[:3]}")

@@ -32,9 +32,9 @@ fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
     let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
     let evidence = LoopEvidence::Pushes {
         pushed: all,
-        torques_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && is_lagrangian(agent)),
-        others_for_ever: pushed(|agent, push| endless(push) && !push.is_hand() && !is_lagrangian(agent)),
-        hands_for_ever: pushed(|_, push| endless(push) && push.is_hand()),
+        torques_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && is_lagrangian(agent)),
+        others_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && !is_lagrangian(agent)),
+        hands_for_ever: pushed(|_, push| endless(push) && push.is_spring()),
         unbounded: pushed(|_, push| !endless(push) && !is_bounded(push)),
         last_end_s: pushes.map(ends_s).fold(0.0, f64::max),
     };
@@ -76,7 +76,7 @@ pub(crate) fn ends_s(push: &Push) -> f64 {
         }),
         Course::Table(_) => false,
     };
-    if ends_s < f64::INFINITY || push.is_hand() {
+    if ends_s < f64::INFINITY || push.is_spring() {
         return ends_s;
     }
     let times = std::iter::once(0.0).chain((0..DOUBLINGS).map(|k| libm::ldexp(1.0, k)));

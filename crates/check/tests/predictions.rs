@@ -321,7 +321,7 @@ fn eq_what_pushes_feed_is_known_before_the_run_where_they_are_torques() {
     let table = Course::Table(Table { times_s: vec![0.0, 20.0], values, between: Between::Linear });
     let push = Push { effect: Effect::Torque(table), from_s: 0.0, until_s: f64::INFINITY };
     assert!((push_w(push).unwrap() - 5.0 / 8.0).abs() < 1e-12);
-    let hand = Effect::HandOnAxes {
+    let hand = Effect::SpringOnAxes {
         axes: vec![0],
         stiffness: vec![1.0],
         damping: vec![0.0],

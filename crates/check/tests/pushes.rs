@@ -18,7 +18,7 @@ use forwardstep_core::reference::polynomial;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::Delay;
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, Table};
+use forwardstep_sim::push::{AttachmentPoint, Between, Course, Effect, Function, Push, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
     Adaptive, AgentSetup, ChainModel, Exchange, Known, Law, Method, Outcome, Robot, RobotSetup, Setup, Signal, Start,
@@ -93,8 +93,8 @@ fn pulse(effect: Effect) -> Push {
 
 /// Everything that can push a planar arm, at once.
 fn rough_handling() -> Vec<Push> {
-    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
-    let hand = Effect::HandOnAxes {
+    let at = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let hand = Effect::SpringOnAxes {
         axes: vec![1],
         stiffness: vec![20.0],
         damping: vec![2.0],
@@ -106,10 +106,10 @@ fn rough_handling() -> Vec<Push> {
     };
     vec![
         pulse(Effect::Torque(constant(&[9.0, -4.0]))),
-        pulse(Effect::Wrench { grip, wrench: constant(&[6.0, 3.0, 0.5]) }),
+        pulse(Effect::Wrench { at, wrench: constant(&[6.0, 3.0, 0.5]) }),
         Push { effect: hand, from_s: 0.0, until_s: f64::INFINITY },
         Push {
-            effect: Effect::HandOnPoint { grip, stiffness: 30.0, damping: 4.0, target: constant(&[0.2, 1.4]) },
+            effect: Effect::SpringOnPoint { at, stiffness: 30.0, damping: 4.0, target: constant(&[0.2, 1.4]) },
             from_s: 7.0,
             until_s: 9.0,
         },
@@ -292,7 +292,7 @@ fn thm_verdicts_on_pushes_that_end_and_that_do_not() {
         hypotheses.pop().map(|h| (h.answer(), h.because()))
     };
     let forever = |effect| Push { effect, from_s: 1.0, until_s: f64::INFINITY };
-    let hand = |target| Effect::HandOnAxes { axes: vec![0], stiffness: vec![5.0], damping: vec![1.0], target };
+    let hand = |target| Effect::SpringOnAxes { axes: vec![0], stiffness: vec![5.0], damping: vec![1.0], target };
     assert_eq!(verdict(Vec::new()), None);
     let nothing = Push { from_s: 1.0, until_s: 1.0, ..pulse(Effect::Torque(constant(&[1.0; 2]))) };
     assert_eq!(verdict(vec![nothing]), None);

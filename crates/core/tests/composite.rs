@@ -30,7 +30,7 @@ fn leader(t: f64) -> [f64; 4] {
 }
 
 /// y_0.
-fn told(t: f64) -> f64 {
+fn transmitted(t: f64) -> f64 {
     let [q, dq, ddq, _] = leader(t);
     ddq + BETA * dq + ALPHA * q
 }
@@ -47,7 +47,7 @@ fn law(choice: Choice) -> CompositeFollowing {
 
 /// e = L ỹ and ỹ.
 fn errors((own, from_leader): &Weights, t: f64, y: &[f64]) -> ([f64; N], [f64; N]) {
-    let apart: [f64; N] = core::array::from_fn(|i| y[i] - told(t));
+    let apart: [f64; N] = core::array::from_fn(|i| y[i] - transmitted(t));
     let e = core::array::from_fn(|i| {
         (0..N).map(|j| own[i][j] * (apart[i] - apart[j])).sum::<f64>() + from_leader[i] * apart[i]
     });
@@ -63,8 +63,9 @@ fn evaluated(
     selection: [f64; N],
 ) -> ([f64; N], [f64; N], [f64; 3 * N]) {
     let degree: [f64; N] = core::array::from_fn(|i| own[i].iter().sum::<f64>() + from_leader[i]);
-    let sums: [f64; N] =
-        core::array::from_fn(|i| own[i].iter().zip(y).map(|(w, y)| w * y).sum::<f64>() + from_leader[i] * told(t));
+    let sums: [f64; N] = core::array::from_fn(|i| {
+        own[i].iter().zip(y).map(|(w, y)| w * y).sum::<f64>() + from_leader[i] * transmitted(t)
+    });
     let (mut z_out, mut dz, mut rate) = ([0.0; N], [0.0; N], [0.0; 3 * N]);
     let out = ReferenceOut { z: &mut z_out, dz: &mut dz, d_state: &mut rate };
     let heard = Heard::new(&degree, &sums, N).unwrap();
@@ -196,7 +197,7 @@ fn own_composite_has_the_leader_in_a_finite_time_over_graphs_that_take_turns() {
     let margin = GAMMA - supremum;
     for graphs in [vec![DIRECTED], vec![DIRECTED, OTHER, MUTUAL]] {
         let mut y = start()[3 * N..4 * N].to_vec();
-        let largest = |t: f64, y: &[f64]| y.iter().fold(0.0_f64, |most, y| most.max((y - told(t)).abs()));
+        let largest = |t: f64, y: &[f64]| y.iter().fold(0.0_f64, |most, y| most.max((y - transmitted(t)).abs()));
         let began = largest(0.0, &y);
         assert!(began > 0.5 && margin > 1.0, "{began} {margin}");
         let mut slower = 0.0_f64;

@@ -70,13 +70,13 @@ fn eq_119_a_sampled_agent_tells_its_acceleration_and_122_its_reference_accelerat
             let (q, dq) = (0.3 + 0.1 * f64::from(k), -0.4 + 0.3 * f64::from(k * k));
             let inbox = Inbox { degree: 1.5, sums: &[1.2, -0.6, 0.9] };
             let dz = agent.step(h * f64::from(k), Measured { q: &[q], dq: &[dq] }, inbox).unwrap().dz[0];
-            let told = agent.told()[0];
+            let transmitted = agent.transmitted()[0];
             let want = match (derived, dz_before) {
                 // q̈ is ż and what the velocity gained beyond the ż of before.
                 (Derived::Acceleration, Some(before)) => dz + (dq - dq_before) / h - before,
                 _ => dz,
             };
-            assert!((told - want).abs() < 1e-10, "{derived:?}, sample {k}: {told} is not {want}");
+            assert!((transmitted - want).abs() < 1e-10, "{derived:?}, sample {k}: {transmitted} is not {want}");
             (dq_before, dz_before) = (dq, Some(dz));
         }
     }
@@ -148,13 +148,16 @@ fn eq_43_a_negative_factor_of_the_input_is_as_good_as_a_positive_one() {
     let guide = ReferenceModel::Consensus(Consensus::<Position>::new([(&[1.0, 2.0][..], 0.0)]).unwrap());
     let law = Linearising::new(plant, Vec::new(), ChainFollowing { guide, gain_per_s: 1.0, floor: 0.1 }).unwrap();
     let state = vec![0.0; total(&law.states())];
-    let told = |psi: f64| {
+    let transmitted = |psi: f64| {
         // z, ż, s, ψ.
         let mut shown = vec![0.0; total(&law.shown())];
         shown[3] = psi;
         law.trouble(&state, &shown).is_some()
     };
-    assert_eq!([-2.0, -0.1, -0.09, 0.0, 0.09, 0.1, 2.0].map(told), [false, false, true, true, true, false, false]);
+    assert_eq!(
+        [-2.0, -0.1, -0.09, 0.0, 0.09, 0.1, 2.0].map(transmitted),
+        [false, false, true, true, true, false, false]
+    );
 }
 
 #[test]
@@ -300,12 +303,12 @@ fn thm6_an_estimate_beyond_its_margin_stands_and_never_turns_round() {
 #[test]
 fn eq_45_a_thrust_that_is_kept_above_a_floor_is_trouble_only_where_it_is_none() {
     let mut law = Thrust::new(ThrustDesign::Continuous, [1.0, 0.7], 1.3, 9.81).unwrap();
-    let told = |law: &Thrust, sigma: f64| law.trouble(&[sigma, 0.0], &[]).is_some();
+    let transmitted = |law: &Thrust, sigma: f64| law.trouble(&[sigma, 0.0], &[]).is_some();
     law.floor = Floor::Stops(2.0);
-    assert_eq!([2.1, 2.0, 1.0, -1.0].map(|sigma| told(&law, sigma)), [false, true, true, true]);
+    assert_eq!([2.1, 2.0, 1.0, -1.0].map(|sigma| transmitted(&law, sigma)), [false, true, true, true]);
     // It may start below its floor, and is led up to it.
     law.floor = Floor::Kept { floor: 2.0, approach_s: 0.1 };
-    assert_eq!([2.1, 1.0, 1e-3, 0.0, -1.0].map(|sigma| told(&law, sigma)), [false, false, false, true, true]);
+    assert_eq!([2.1, 1.0, 1e-3, 0.0, -1.0].map(|sigma| transmitted(&law, sigma)), [false, false, false, true, true]);
     let Some(Singularity::Vanishes { value, floor, .. }) = law.trouble(&[-1.0, 0.0], &[]) else { panic!() };
     assert_eq!((value, floor), (-1.0, 0.0));
 }
@@ -319,11 +322,11 @@ fn eq_119_a_sampled_agent_solves_its_sign_for_the_period_that_passed() {
     let mut seen = 0;
     for k in 0..6 {
         let (q, dq) = at(f64::from(k));
-        let sums = [degree * 0.3, degree * 0.05, degree * agent.told()[0]];
+        let sums = [degree * 0.3, degree * 0.05, degree * agent.transmitted()[0]];
         let inbox = Inbox { degree, sums: &sums };
         agent.step(h * f64::from(k), Measured { q: &q, dq: &dq }, inbox).unwrap();
-        let told = [agent.told()[0]];
-        let own = [&q[..], &dq, &told];
+        let transmitted = [agent.transmitted()[0]];
+        let own = [&q[..], &dq, &transmitted];
         let sums = [&sums[..1], &sums[1..2], &sums[2..]];
         let mut e = [0.0];
         let sign = Sliding { derived: Derived::ReferenceAcceleration, ..SIGN };

@@ -123,8 +123,8 @@ fn model_reference_control_refuses_wrong_lengths() {
     };
     let rests: &'static [Jet; 2] = Box::leak(Box::new(rests));
     let refused = |target, [state, rate, input, shown]: [usize; 4]| {
-        let (mut d_state, mut u, mut told) = (vec![0.0; rate], vec![0.0; input], vec![0.0; shown]);
-        let asked = ControllerOutput { input: &mut u, d_state: &mut d_state, shown: &mut told };
+        let (mut d_state, mut u, mut transmitted) = (vec![0.0; rate], vec![0.0; input], vec![0.0; shown]);
+        let asked = ControllerOutput { input: &mut u, d_state: &mut d_state, shown: &mut transmitted };
         law.evaluate(&mut (), given(target), &vec![0.0; state], asked).is_err()
     };
     assert!(!refused(rests, [7, 7, 2, 5]));

@@ -234,6 +234,23 @@ fn the_document_keeps_to_its_schema() {
     }
 }
 
+/// A design behind a leader has no roots of its own to count, and who is alone tells nobody anything.
+#[test]
+fn regress_what_a_row_says_nothing_of_has_its_own_reason() {
+    let here = folder();
+    let alone = "format = 2\ntitle = \"m\"\ntime.end_s = 2\n[[agents]]\nname = \"m\"\nrobot.point_mass = { dimension = 1, mass_kg = 3 }\n\
+                 start.position_m = [1]\ntarget.formulas = [\"sin(t)\"]\n[reference.tracking]\nroots_per_s = [1, 2]\n[law.adaptive]\n";
+    write(&here, "alone.toml", alone);
+    let found = document(&here, &["alone.toml", "swarm-tracking", "leader-over-turns", "pilot-ship"], "beside");
+    let because = |key: &str, run: usize| row(&found, key)["cells"][run]["because"].as_str().map(str::to_owned);
+    assert_eq!(because("told", 0).as_deref(), Some("no agent hears another"));
+    assert_eq!(because("told", 1), None);
+    assert_eq!(because("order", 0), None);
+    assert_eq!(because("order", 2).as_deref(), Some("it is that of the design behind a leader"), "{found}");
+    // The pilot has two roots, and those that follow it none.
+    assert_eq!(row(&found, "order")["cells"][3]["words"], "2");
+}
+
 #[test]
 fn ships_under_every_order_are_the_same_but_for_what_leads_them() {
     let here = folder();

@@ -112,7 +112,8 @@ fn options_are_written_down_and_the_scenario_runs() {
         arguments.extend(*options);
         let written = forwardstep(&folder, &arguments).success();
         assert_eq!(stdout(&written), format!("wrote {file}; next: forwardstep run {file}\n"));
-        assert!(stderr(&written).starts_with("tried "), "{}", stderr(&written));
+        // On a slow machine it says before that it is still trying.
+        assert!(stderr(&written).lines().any(|line| line.starts_with("tried ")), "{}", stderr(&written));
         let text = fs::read_to_string(folder.path().join(&file)).unwrap();
         let (schema, text) = text.split_once('\n').unwrap();
         assert_eq!(schema, "#:schema ./forwardstep.schema.json");

@@ -49,6 +49,28 @@ fn metrics_are_what_one_computes_by_hand() {
 }
 
 #[test]
+fn what_acts_without_an_axis_has_its_peaks() {
+    let (setup, mut recording) = by_hand();
+    for (agent, signal, axis, values) in [
+        (0, Signal::Thrust, 0, [1.0, -3.0, 2.0, 3.0]),
+        (1, Signal::WheelMomentum, 0, [0.1, 0.2, 0.3, 0.4]),
+        (1, Signal::WheelMomentum, 1, [0.0, 0.0, -0.5, 0.0]),
+    ] {
+        recording.columns.push(Column { agent, signal, axis, values: values.to_vec() });
+    }
+    let loads = Metrics::of(&setup, &recording, None, None).peak_loads;
+    let found: Vec<_> =
+        loads.iter().map(|l| (l.peak.agent, l.words(), l.unit(&setup), l.peak.t_s, l.peak.value)).collect();
+    let expected = [
+        (0, "thrust".to_owned(), "N".to_owned(), 1.0, -3.0),
+        (1, "momentum of wheel 1".to_owned(), "N m s".to_owned(), 3.0, 0.4),
+        (1, "momentum of wheel 2".to_owned(), "N m s".to_owned(), 2.0, -0.5),
+    ];
+    assert_eq!(found, expected, "a second wheel, of an agent with one axis");
+    assert!(loads.iter().all(|load| load.limit.is_none()));
+}
+
+#[test]
 fn agents_in_formation_agree_on_where_they_are_less_their_offsets() {
     let (setup, mut recording) = by_hand();
     for (agent, values) in [(0, [0.5, 0.5, -0.5, -1.0]), (1, [0.0, 0.0, 0.0, -0.75])] {

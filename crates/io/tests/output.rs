@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use crate::sampled::control;
 use crate::support::{agent, outcome, record, setup, two_arms, verdicts};
-use forwardstep_check::hypothesis::{GraphEvidence, Named};
+use forwardstep_check::hypothesis::{GraphEvidence, KindEvidence, MotionEvidence, Named, Subject};
+use forwardstep_check::{Hypothesis, Id};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PlanarArm;
 use forwardstep_io::output::{GoalOutcome, Options, RunFolder, ending_sentence, names, write_run};
@@ -239,6 +240,40 @@ fn a_run_that_outgrows_its_memory_says_what_to_lower() {
     let (head, why) = sentence(&setup, 1e-8, 1e3, None);
     assert!(head.contains("arm-2.dq.2 moves fastest in steps of 1 × 10⁻⁸ s"), "{head}");
     assert!(why.ends_with("1000 1/s: raise `step_s`, or raise the budget."), "{why}");
+}
+
+/// Of hypotheses that are watched those failed whose quantity vanished, and of each agent its own.
+#[test]
+fn what_ended_a_run_is_the_failure_of_what_was_watched_of_that_agent_alone() {
+    let (setup, whole) = two_arms();
+    let about = |id, agent: Option<usize>| Hypothesis {
+        id,
+        subject: agent.map_or(Subject::Setup, |index| Subject::Agent(Named { index, name: format!("arm-{index}") })),
+        evidence: MotionEvidence::OfAgent.into(),
+    };
+    let mut report = verdicts();
+    report.hypotheses = vec![
+        about(Id::RegularJacobian, Some(0)),
+        about(Id::RegularJacobian, Some(1)),
+        about(Id::NonzeroThrust, None),
+        about(Id::InputFactor, None),
+        Hypothesis { evidence: KindEvidence::ConstantFactor.into(), ..about(Id::InputFactor, None) },
+    ];
+    let failures = |signal: Signal, cause: BreakdownCause| {
+        let ending = Ending::BrokeDown(Breakdown { t_s: 0.5, agent: 1, signal, axis: 0, cause });
+        record(&setup, &Outcome { ending, ..whole.clone() }, &report).failures()
+    };
+    let vanished = BreakdownCause::Vanished { value: 0.0, floor: 1.0 };
+    for (signal, id) in [
+        (Signal::Determinant, "regular-jacobian"),
+        (Signal::SingularValue, "regular-jacobian"),
+        (Signal::Thrust, "nonzero-thrust"),
+        (Signal::Divisor, "input-factor"),
+    ] {
+        assert_eq!(failures(signal, vanished), [format!("[{id}]: it failed, at t = 0.5 s")]);
+    }
+    assert!(failures(Signal::Divisor, BreakdownCause::NotFinite).is_empty());
+    assert!(record(&setup, &whole, &report).failures().is_empty());
 }
 
 /// A thrust that vanished was only `it`, and who samples too slowly was told to look elsewhere.

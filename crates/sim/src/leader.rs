@@ -191,7 +191,7 @@ impl ReferenceDynamics for Following {
 
     fn check(&self, setup: &Setup) -> Result<(), SetupError> {
         self.numbers(setup.time.end_s, setup.control.is_some())?;
-        let told = self.sliding().told() > 0;
+        let transmitted = self.sliding().transmitted() > 0;
         let vertex = match &self.leader {
             Leading::Motion(leader) => {
                 let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
@@ -211,7 +211,7 @@ impl ReferenceDynamics for Following {
                 return Err(SetupError::LeaderHears { leader: setup.vertex_name(vertex).to_owned() });
             }
             let delay_s = setup.network.delays.get(edge.delay).map_or(0.0, |delay| delay.max_s());
-            if told && setup.control.is_none() && delay_s > 0.0 {
+            if transmitted && setup.control.is_none() && delay_s > 0.0 {
                 return Err(SetupError::DelayedDerived { delay_s });
             }
         }

@@ -1,4 +1,4 @@
-//! What acts on robots from outside: forces, torques, hands and disturbances, as plain data.
+//! What acts on robots from outside: forces, torques, springs and disturbances, as plain data.
 //!
 //! A push adds to what [`Attachments::blocks`] lists of one agent between two instants and nothing outside them. Where it begins and ends, and
 //! where a table has a row, steps of the integrator end; between such instants a push is evaluated by the piece in force, so
@@ -30,15 +30,15 @@ pub struct Push {
 pub enum Effect {
     /// τ_ext itself, N m or N, or disturbances: a component for every entry of [`Attachments::blocks`].
     Torque(Course),
-    /// A force and a moment at a point: τ_ext = Jᵀw. The components are those of [`Grip::wrench_components`].
+    /// A force and a moment at a point: τ_ext = Jᵀw. The components are those of [`AttachmentPoint::wrench_components`].
     Wrench {
         /// Where it acts, and in which axes.
-        grip: Grip,
+        at: AttachmentPoint,
         /// Components in N, then N m.
         wrench: Course,
     },
-    /// A hand that holds some axes by springs and dampers: τ_ext = k (q_h(t) − q) − d q̇ on each of them.
-    HandOnAxes {
+    /// Springs and dampers on some axes: τ_ext = k (q_h(t) − q) − d q̇ on each of them.
+    SpringOnAxes {
         /// The axes held, from zero.
         axes: Vec<usize>,
         /// k of each, N m/rad or N/m.
@@ -48,22 +48,22 @@ pub enum Effect {
         /// q_h of each, rad or m.
         target: Course,
     },
-    /// A hand that holds a point by a spring and a damper: τ_ext = Jᵀf with f = k (x_h(t) − x) − d ẋ in base axes.
-    HandOnPoint {
-        /// Where it holds the robot.
-        grip: Grip,
+    /// A spring and a damper on a point: τ_ext = Jᵀf with f = k (x_h(t) − x) − d ẋ in base axes.
+    SpringOnPoint {
+        /// Where it is attached.
+        at: AttachmentPoint,
         /// k, N/m.
         stiffness: f64,
         /// d, N s/m.
         damping: f64,
-        /// x_h, m; components as in [`Grip::point_components`].
+        /// x_h, m; components as in [`AttachmentPoint::point_components`].
         target: Course,
     },
 }
 
 /// A place on a robot where something can hold or push it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Grip {
+pub enum AttachmentPoint {
     /// A point of a link of a tree.
     Link {
         /// The point.
@@ -75,20 +75,20 @@ pub enum Grip {
     Tip(PlanarTip),
 }
 
-impl Grip {
+impl AttachmentPoint {
     /// How many components a force with its moment has: f_x, f_y, f_z, n_x, n_y, n_z on a link; f_x, f_y, n on a planar arm.
     pub fn wrench_components(&self) -> usize {
         match self {
-            Grip::Link { .. } => 6,
-            Grip::Tip(_) => 3,
+            AttachmentPoint::Link { .. } => 6,
+            AttachmentPoint::Tip(_) => 3,
         }
     }
 
     /// How many components a position has.
     pub fn point_components(&self) -> usize {
         match self {
-            Grip::Link { .. } => 3,
-            Grip::Tip(_) => 2,
+            AttachmentPoint::Link { .. } => 3,
+            AttachmentPoint::Tip(_) => 2,
         }
     }
 }
@@ -202,14 +202,14 @@ impl Push {
         match &self.effect {
             Effect::Torque(course)
             | Effect::Wrench { wrench: course, .. }
-            | Effect::HandOnAxes { target: course, .. }
-            | Effect::HandOnPoint { target: course, .. } => course,
+            | Effect::SpringOnAxes { target: course, .. }
+            | Effect::SpringOnPoint { target: course, .. } => course,
         }
     }
 
     /// Whether it depends on how the robot moves.
-    pub fn is_hand(&self) -> bool {
-        matches!(self.effect, Effect::HandOnAxes { .. } | Effect::HandOnPoint { .. })
+    pub fn is_spring(&self) -> bool {
+        matches!(self.effect, Effect::SpringOnAxes { .. } | Effect::SpringOnPoint { .. })
     }
 
     /// Whether it has a meaning for `robot`.
@@ -228,11 +228,11 @@ impl Push {
             Effect::Torque(course) => {
                 length("the torque", total(&robot.interface().attachments.blocks(axes)), course.components())?;
             }
-            Effect::Wrench { grip, wrench } => {
-                grip.check(robot)?;
-                length("the wrench", grip.wrench_components(), wrench.components())?;
+            Effect::Wrench { at, wrench } => {
+                at.check(robot)?;
+                length("the wrench", at.wrench_components(), wrench.components())?;
             }
-            Effect::HandOnAxes { axes: held, stiffness, damping, target } => {
+            Effect::SpringOnAxes { axes: held, stiffness, damping, target } => {
                 let springs = !matches!(robot.interface().attachments, Attachments::Equations(_));
                 if !springs || robot.velocity_len() != axes {
                     return Err(PushError::NoSpring);
@@ -245,11 +245,11 @@ impl Push {
                 length("the target", held.len(), target.components())?;
                 stiffness.iter().chain(damping).try_for_each(|value| not_negative(*value))?;
             }
-            Effect::HandOnPoint { grip, stiffness, damping, target } => {
-                grip.check(robot)?;
+            Effect::SpringOnPoint { at, stiffness, damping, target } => {
+                at.check(robot)?;
                 not_negative(*stiffness)?;
                 not_negative(*damping)?;
-                length("the target", grip.point_components(), target.components())?;
+                length("the target", at.point_components(), target.components())?;
             }
         }
         match self.course() {
@@ -268,17 +268,19 @@ impl Push {
     }
 }
 
-impl Grip {
+impl AttachmentPoint {
     fn check(&self, robot: &RobotSetup) -> Result<(), PushError> {
         match (self, robot.interface().attachments) {
-            (Grip::Link { point, .. }, Attachments::Links(tree)) => {
+            (AttachmentPoint::Link { point, .. }, Attachments::Links(tree)) => {
                 if let Some(body) = point.link.body.filter(|body| *body >= tree.joint_count()) {
                     return Err(PushError::NoSuchBody { body, bodies: tree.joint_count() });
                 }
                 point.at.iter().try_for_each(|value| finite(*value))
             }
-            (Grip::Tip(tip), Attachments::PlanarTip) => tip.length_m.iter().try_for_each(|value| finite(*value)),
-            _ => Err(PushError::Grip),
+            (AttachmentPoint::Tip(tip), Attachments::PlanarTip) => {
+                tip.length_m.iter().try_for_each(|value| finite(*value))
+            }
+            _ => Err(PushError::AttachmentPoint),
         }
     }
 }
@@ -320,7 +322,7 @@ pub enum PushError {
         /// How many there are.
         axes: usize,
     },
-    /// A hand on axes that no force moves.
+    /// A spring on axes that no force moves.
     #[error("a virtual spring holds axes that forces move, and this robot has none")]
     NoSpring,
     /// A moving body that the robot has not.
@@ -333,7 +335,7 @@ pub enum PushError {
     },
     /// A place that this robot has not.
     #[error("it grips a robot of another kind: links belong to trees, end-effectors to planar arms")]
-    Grip,
+    AttachmentPoint,
     /// A stiffness or damping that is negative.
     #[error("a stiffness or damping is {value}, but must be finite and not negative")]
     Negative {

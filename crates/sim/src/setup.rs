@@ -79,7 +79,7 @@ impl Setup {
         if !self.network.has_edges() {
             return Vec::new();
         }
-        let told = match self.following().map(|following| following.design) {
+        let transmitted = match self.following().map(|following| following.design) {
             Some(FollowingDesign::Differentiable) => Some("acceleration"),
             Some(FollowingDesign::WithoutAcceleration | FollowingDesign::Swarm { .. }) => {
                 Some("reference acceleration")
@@ -87,7 +87,7 @@ impl Setup {
             Some(FollowingDesign::Continuous | FollowingDesign::Composite | FollowingDesign::Observer { .. })
             | None => None,
         };
-        self.exchange.words().iter().copied().chain(told).collect()
+        self.exchange.words().iter().copied().chain(transmitted).collect()
     }
 
     /// What an agent measures, in words, whose law measures `law`.

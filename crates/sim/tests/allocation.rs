@@ -73,7 +73,7 @@ fn a_hand_leads(setup: &mut Setup) {
     let values = (0..200 * axes).map(|k| 0.01 * k as f64).collect();
     let table = Course::Table(Table { times_s, values, between: Between::Linear });
     let (stiffness, damping) = (vec![3.0; axes], vec![1.0; axes]);
-    let hand = Effect::HandOnAxes { axes: (0..axes).collect(), stiffness, damping, target: table };
+    let hand = Effect::SpringOnAxes { axes: (0..axes).collect(), stiffness, damping, target: table };
     setup.agents[0].pushes = vec![Push { effect: hand, from_s: 0.1, until_s: f64::INFINITY }];
 }
 

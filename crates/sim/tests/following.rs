@@ -1,6 +1,6 @@
 //! Following a leader, (110), (119) and (122): the identity of the proof, convergence, and what the choice of the sign does.
 
-mod told;
+mod transmitted;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -8,7 +8,7 @@ use forwardstep_core::Gain;
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip};
 use forwardstep_sim::delay::{Delay, SawTooth, Sinusoid};
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::push::{Course, Effect, Function, Grip, Push};
+use forwardstep_sim::push::{AttachmentPoint, Course, Effect, Function, Push};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
     Actuators, Adaptive, AgentSetup, Axis, AxisUnit, Control, Exchange, Method, Network, RobotSetup, Sensors, Setup,
@@ -25,9 +25,9 @@ fn arm(index: usize, order: usize) -> AgentSetup {
         velocity_limit: None,
         effort_limit: None,
     };
-    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let at = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 0.8] });
     let wrench = Course::Each([2.0, -3.0, 0.5].map(Function::Constant).to_vec());
-    let wrench = Push { effect: Effect::Wrench { grip, wrench }, from_s: 0.45, until_s: 1.25 };
+    let wrench = Push { effect: Effect::Wrench { at, wrench }, from_s: 0.45, until_s: 1.25 };
     AgentSetup {
         name: format!("arm-{}", index + 1),
         robot: RobotSetup {

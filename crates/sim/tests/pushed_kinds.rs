@@ -12,7 +12,7 @@ use crate::common::{RTOL, assert_first_order, balance_residual, column, last, ru
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::PlanarTip;
 use forwardstep_core::robot::tree::{Axes, LinkPoint, Uncertain};
-use forwardstep_sim::push::{Course, Effect, Function, Grip, Push, PushError};
+use forwardstep_sim::push::{AttachmentPoint, Course, Effect, Function, Push, PushError};
 use forwardstep_sim::{Outcome, Setup, SetupError, Signal, TaskSpaceLaw, ThrustKind, TipSetup, simulate};
 
 fn constant(values: &[f64]) -> Course {
@@ -30,9 +30,9 @@ fn push(effect: Effect) -> Push {
     Push { effect, from_s: 0.7, until_s: 2.3 }
 }
 
-fn hand(axes: &[usize], target: &[f64]) -> Push {
+fn spring(axes: &[usize], target: &[f64]) -> Push {
     let (stiffness, damping) = (vec![3.0; axes.len()], vec![1.5; axes.len()]);
-    push(Effect::HandOnAxes { axes: axes.to_vec(), stiffness, damping, target: constant(target) })
+    push(Effect::SpringOnAxes { axes: axes.to_vec(), stiffness, damping, target: constant(target) })
 }
 
 /// What acts on an agent of each kind, alternately constant and swaying, so that no two agents are pushed alike.
@@ -83,12 +83,12 @@ fn eq_a8_balance_counts_the_power_of_forces_on_masses() {
     }
 }
 
-/// A force and a moment on the tip of a planar arm, and a hand that holds it.
+/// A force and a moment on the tip of a planar arm, and a spring that holds it.
 fn at_the_tip() -> [Setup; 2] {
-    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
-    let wrench = Effect::Wrench { grip, wrench: constant(&[5.0, -4.0, 1.0]) };
-    let hand = Effect::HandOnPoint { grip, stiffness: 20.0, damping: 2.0, target: constant(&[0.7, 0.9]) };
-    [wrench, hand].map(|effect| {
+    let at = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let wrench = Effect::Wrench { at, wrench: constant(&[5.0, -4.0, 1.0]) };
+    let spring = Effect::SpringOnPoint { at, stiffness: 20.0, damping: 2.0, target: constant(&[0.7, 0.9]) };
+    [wrench, spring].map(|effect| {
         let mut setup = planar(None, 0.3);
         setup.time.end_s = 5.0;
         setup.agents[0].pushes = vec![push(effect)];
@@ -104,10 +104,10 @@ fn thm6_balance_counts_the_power_of_forces_on_end_effectors() {
         TipSetup::Point { point, .. } => *point,
         TipSetup::Planar(_) => panic!("it is a tree"),
     };
-    let grip = Grip::Link { point: LinkPoint { at: [0.4, 0.1, 0.0], ..point }, axes: Axes::Base };
+    let at = AttachmentPoint::Link { point: LinkPoint { at: [0.4, 0.1, 0.0], ..point }, axes: Axes::Base };
     let mut lifted = turntable.clone();
     lifted.agents[0].pushes =
-        vec![push(Effect::Wrench { grip, wrench: constant(&[6.0, -3.0, 8.0, 0.5, 0.0, 1.0]) }), hand(&[1], &[-0.5])];
+        vec![push(Effect::Wrench { at, wrench: constant(&[6.0, -3.0, 8.0, 0.5, 0.0, 1.0]) }), spring(&[1], &[-0.5])];
     for setup in at_the_tip().into_iter().chain([lifted, pushed(turntable, &[4.0, -6.0, 3.0])]) {
         balances(&setup, 0.0);
     }
@@ -142,12 +142,12 @@ fn forces_that_end_do_not_keep_vehicles_from_their_agreement() {
     }
 }
 
-/// In a formation the state stands relative to the offset; a hand holds the body.
+/// In a formation the state stands relative to the offset; a spring holds the body.
 #[test]
 fn hands_hold_where_a_vehicle_is_and_not_where_it_is_in_its_formation() {
     for kind in [vehicle(), rotorcraft()] {
         let mut setup = three(&kind, DIFFERENTIABLE, true, 4.0);
-        setup.agents[1].pushes = vec![hand(&[2, 0], &[-3.0, 1.0])];
+        setup.agents[1].pushes = vec![spring(&[2, 0], &[-3.0, 1.0])];
         for setup in [setup.clone(), sampled(setup, 500.0)] {
             let outcome = run(&setup);
             let (t_s, at) = (&outcome.recording.t_s, |signal, axis| column(&outcome, 1, signal, axis));
@@ -219,7 +219,7 @@ fn what_cannot_act_on_a_kind_is_refused() {
             other => panic!("{other:?}"),
         }
     };
-    let spring = |axes: &[usize]| hand(axes, &vec![0.0; axes.len()]).effect;
+    let spring = |axes: &[usize]| spring(axes, &vec![0.0; axes.len()]).effect;
     let attitude = || craft(half_a_turn([0.0; 3]), targets().swap_remove(0), 5.0);
     // Springs need axes that forces move: neither a quaternion nor a state of a chain is one.
     for setup in [attitude(), derivatives(), cascades()] {
@@ -236,6 +236,6 @@ fn what_cannot_act_on_a_kind_is_refused() {
         refused(three(&rotorcraft(), ADAPTIVE, false, 1.0), spring(&[3])),
         PushError::NoSuchAxis { axis: 3, axes: 3 }
     );
-    let grip = Grip::Tip(PlanarTip { length_m: [1.0, 1.0] });
-    assert_eq!(refused(derivatives(), Effect::Wrench { grip, wrench: constant(&[0.0; 3]) }), PushError::Grip);
+    let at = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 1.0] });
+    assert_eq!(refused(derivatives(), Effect::Wrench { at, wrench: constant(&[0.0; 3]) }), PushError::AttachmentPoint);
 }

@@ -12,7 +12,7 @@ use forwardstep_core::robot::tree::{
 use forwardstep_core::robot::{PlanarArm, PlanarLinks, PlanarTip, PointMass};
 use forwardstep_sim::delay::{Delay, SawTooth};
 use forwardstep_sim::graph::Edge;
-use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push, PushError, Table};
+use forwardstep_sim::push::{AttachmentPoint, Between, Course, Effect, Function, Push, PushError, Table};
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::{
     Adaptive, AgentSetup, Axis, AxisUnit, Ending, Exchange, Known, Law, Method, Network, Outcome, Robot, RobotSetup,
@@ -158,10 +158,10 @@ fn formulas_are_functions_of_the_time_of_the_run() {
 }
 
 #[test]
-fn a_hand_is_a_spring_and_a_damper() {
-    // Held against the law: at rest q = z = 0 gives nothing back for λ = 0, so the mass settles where the hand is not.
-    let hand = Push {
-        effect: Effect::HandOnAxes {
+fn a_virtual_spring_pulls_and_damps() {
+    // Held against the law: at rest q = z = 0 gives nothing back for λ = 0, so the mass settles elsewhere.
+    let spring = Push {
+        effect: Effect::SpringOnAxes {
             axes: vec![0],
             stiffness: vec![30.0],
             damping: vec![2.0],
@@ -170,7 +170,7 @@ fn a_hand_is_a_spring_and_a_damper() {
         from_s: 0.0,
         until_s: 2.0,
     };
-    let outcome = run(&alone(vec![mass(vec![hand])], 3.0));
+    let outcome = run(&alone(vec![mass(vec![spring])], 3.0));
     let (q, dq) = (column(&outcome, 0, Signal::Position, 0), column(&outcome, 0, Signal::Velocity, 0));
     let external = column(&outcome, 0, Signal::External, 0);
     for (row, t_s) in outcome.recording.t_s.iter().enumerate() {
@@ -236,29 +236,25 @@ fn jointed() -> (AgentSetup, LinkPoint) {
 #[test]
 fn thm_the_lyapunov_balance_holds_while_pushed() {
     let rtol = 1e-8;
-    let tip = Grip::Tip(PlanarTip { length_m: [1.0, 0.8] });
+    let tip = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 0.8] });
     let (tree, point) = jointed();
-    let link = |axes| Grip::Link { point, axes };
-    let hand = |grip, target: &[f64], stiffness| Effect::HandOnPoint {
-        grip,
-        stiffness,
-        damping: 3.0,
-        target: constant(target),
-    };
+    let link = |axes| AttachmentPoint::Link { point, axes };
+    let spring =
+        |at, target: &[f64], stiffness| Effect::SpringOnPoint { at, stiffness, damping: 3.0, target: constant(target) };
     let pulse = |effect| Push { effect, from_s: 0.7, until_s: 2.2 };
     let cases = [
         (arm(), pulse(Effect::Torque(constant(&[6.0, -3.0])))),
-        (arm(), pulse(Effect::Wrench { grip: tip, wrench: constant(&[5.0, 4.0, 1.0]) })),
-        (arm(), pulse(hand(tip, &[0.5, 1.0], 25.0))),
+        (arm(), pulse(Effect::Wrench { at: tip, wrench: constant(&[5.0, 4.0, 1.0]) })),
+        (arm(), pulse(spring(tip, &[0.5, 1.0], 25.0))),
         (
             tree.clone(),
-            pulse(Effect::Wrench { grip: link(Axes::Base), wrench: constant(&[9.0, 4.0, 2.0, 0.0, 1.0, 1.0]) }),
+            pulse(Effect::Wrench { at: link(Axes::Base), wrench: constant(&[9.0, 4.0, 2.0, 0.0, 1.0, 1.0]) }),
         ),
         (
             tree.clone(),
-            pulse(Effect::Wrench { grip: link(Axes::Link), wrench: constant(&[9.0, 4.0, 2.0, 0.0, 1.0, 1.0]) }),
+            pulse(Effect::Wrench { at: link(Axes::Link), wrench: constant(&[9.0, 4.0, 2.0, 0.0, 1.0, 1.0]) }),
         ),
-        (tree, pulse(hand(link(Axes::Base), &[0.3, 0.3, 0.4], 60.0))),
+        (tree, pulse(spring(link(Axes::Base), &[0.3, 0.3, 0.4], 60.0))),
     ];
     for (robot, push) in cases {
         let mut agents = vec![robot.clone(), robot];
@@ -300,24 +296,27 @@ fn pushes_without_meaning_are_refused() {
     };
     let one = || mass(Vec::new());
     let always = |effect| Push { effect, from_s: 0.0, until_s: f64::INFINITY };
-    let hand = |axes: &[usize], k: f64, target| {
+    let spring = |axes: &[usize], k: f64, target| {
         let (stiffness, damping) = (vec![k; axes.len()], vec![0.0; axes.len()]);
-        always(Effect::HandOnAxes { axes: axes.to_vec(), stiffness, damping, target })
+        always(Effect::SpringOnAxes { axes: axes.to_vec(), stiffness, damping, target })
     };
     assert_eq!(refused(one(), torque(constant(&[1.0]), 2.0, 1.0)), PushError::Times { from_s: 2.0, until_s: 1.0 });
     assert_eq!(
         refused(one(), always(Effect::Torque(constant(&[1.0, 2.0])))),
         PushError::Length { what: "the torque", need: 1, got: 2 }
     );
-    assert_eq!(refused(one(), hand(&[1], 1.0, constant(&[1.0]))), PushError::NoSuchAxis { axis: 1, axes: 1 });
-    assert_eq!(refused(one(), hand(&[0], -1.0, constant(&[1.0]))), PushError::Negative { value: -1.0 });
-    let tip = Grip::Tip(PlanarTip { length_m: [1.0, 1.0] });
-    assert_eq!(refused(one(), always(Effect::Wrench { grip: tip, wrench: constant(&[0.0; 3]) })), PushError::Grip);
+    assert_eq!(refused(one(), spring(&[1], 1.0, constant(&[1.0]))), PushError::NoSuchAxis { axis: 1, axes: 1 });
+    assert_eq!(refused(one(), spring(&[0], -1.0, constant(&[1.0]))), PushError::Negative { value: -1.0 });
+    let tip = AttachmentPoint::Tip(PlanarTip { length_m: [1.0, 1.0] });
+    assert_eq!(
+        refused(one(), always(Effect::Wrench { at: tip, wrench: constant(&[0.0; 3]) })),
+        PushError::AttachmentPoint
+    );
     let (tree, mut point) = jointed();
     point.link.body = Some(7);
-    let grip = Grip::Link { point, axes: Axes::Base };
+    let at = AttachmentPoint::Link { point, axes: Axes::Base };
     assert_eq!(
-        refused(tree, always(Effect::Wrench { grip, wrench: constant(&[0.0; 6]) })),
+        refused(tree, always(Effect::Wrench { at, wrench: constant(&[0.0; 6]) })),
         PushError::NoSuchBody { body: 7, bodies: 2 }
     );
     for (times, values) in [(vec![0.0], vec![1.0]), (vec![0.0, 0.0], vec![1.0, 2.0]), (vec![0.0, 1.0], vec![1.0; 3])] {

@@ -203,10 +203,16 @@ fn assert_same_bits(name: &str, setup: &Setup) -> Counts {
             let torque = column.signal == Signal::Torque && !input;
             let made_of_it =
                 torque || !exact && !input && !matches!(column.signal, Signal::Reference(_) | Signal::Estimate);
-            let told = agent.diagnostics(column.signal).filter(|_| !measured && !made_of_it);
-            if let (Some(told), true) = (told, outcome.recording.t_s[row] == log[0][row].now_s) {
+            let transmitted = agent.diagnostics(column.signal).filter(|_| !measured && !made_of_it);
+            if let (Some(transmitted), true) = (transmitted, outcome.recording.t_s[row] == log[0][row].now_s) {
                 let what = format!("{name}, {:?} {}", column.signal, column.axis);
-                assert_bits(&what, row, column.agent, &told[column.axis..=column.axis], &column.values[row..=row]);
+                assert_bits(
+                    &what,
+                    row,
+                    column.agent,
+                    &transmitted[column.axis..=column.axis],
+                    &column.values[row..=row],
+                );
                 compared += 1;
             }
         }
@@ -366,8 +372,8 @@ fn an_agent_that_starts_by_itself_comes_to_the_same_state_as_one_that_was_told()
     for (name, setup) in crate::common::every_kind() {
         let setup = at_samples(setup, 0.25);
         let (_, log) = logged(&setup);
-        let mut told = Replay::new(&setup, &log);
-        told.sample(0);
+        let mut transmitted = Replay::new(&setup, &log);
+        transmitted.sample(0);
         for (k, mut recipe) in recipes(&setup).unwrap().into_iter().enumerate() {
             recipe.start = StartState::FirstSample { wanted: setup.agents[k].start.reference.clone() };
             let mut alone = recipe.build().unwrap();
@@ -381,8 +387,11 @@ fn an_agent_that_starts_by_itself_comes_to_the_same_state_as_one_that_was_told()
                 "{name}: {first:?} {message:?}"
             );
             alone.step(*now_s, measured, Inbox { degree: *degree, sums }).unwrap();
-            let (told, alone) = (told.agents[k].state(), alone.state());
-            assert!(told.len() == alone.len() && !told.iter().zip(alone).any(far), "{name}: {told:?} {alone:?}");
+            let (transmitted, alone) = (transmitted.agents[k].state(), alone.state());
+            assert!(
+                transmitted.len() == alone.len() && !transmitted.iter().zip(alone).any(far),
+                "{name}: {transmitted:?} {alone:?}"
+            );
         }
     }
 }

@@ -86,7 +86,7 @@ pub(super) fn never_zero(target: &Trajectory, end_s: f64) -> Option<MotionEviden
     let seen = target.least_norm(until_s);
     let square = target.squared_norm().map(|square| BoundedFormula::new(square.sqrt_of(), end_s));
     let least = square.as_ref().map_or(0.0, |norm| norm.for_ever().within.low);
-    if least > 0.0 {
+    if let Some(least) = Some(least).filter(|least| *least > 0.0).or_else(|| target.least_turning_norm()) {
         return Some(MotionEvidence::NormAbove { least });
     }
     let fastest = |axis| {

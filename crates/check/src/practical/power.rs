@@ -262,7 +262,7 @@ pub(super) fn pushed_w(agent: &AgentSetup, gains: &Gains, [first_s, last_s]: [f6
 fn peak(push: &Push, axes: usize, [begins_s, ends_s]: [f64; 2]) -> Option<DVector<f64>> {
     let course = match &push.effect {
         Effect::Torque(course) => course,
-        Effect::Wrench { .. } | Effect::HandOnAxes { .. } | Effect::HandOnPoint { .. } => return None,
+        Effect::Wrench { .. } | Effect::SpringOnAxes { .. } | Effect::SpringOnPoint { .. } => return None,
     };
     let largest = |axis: usize| match course {
         Course::Each(functions) => match functions.get(axis)? {

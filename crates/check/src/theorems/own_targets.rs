@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 use forwardstep_sim::reference::Desired;
-use forwardstep_sim::trajectory::Trajectory;
+use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Law, PassivityFilterLaw, Setup, TaskSpaceLaw};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
@@ -47,7 +47,7 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
                     let position = target.paths().get(..first).and_then(|paths| Trajectory::new(paths.to_vec()).ok());
                     match position.as_ref().map(known) {
                         Some(unbounded @ Bounded::Unbounded { .. }) => unbounded,
-                        Some(Bounded::ForEver | Bounded::NotShown) | None => Bounded::NotShown,
+                        Some(Bounded::ForEver | Bounded::NotShown | Bounded::Jumps) | None => Bounded::NotShown,
                     }
                 }
                 (bounded, _) => bounded,
@@ -86,6 +86,7 @@ impl Group {
         let (rank, numbers) = match self.bounded {
             Bounded::ForEver => (0, [0; 3]),
             Bounded::NotShown => (1, [0; 3]),
+            Bounded::Jumps => (3, [0; 3]),
             Bounded::Unbounded { derivative, witness } => {
                 let [t_s, value] = witness.map_or([0; 2], |found| [found.t_s, found.value].map(f64::to_bits));
                 (2, [derivative as u64, t_s, value])
@@ -119,6 +120,7 @@ pub(super) fn how_far(trajectory: &Trajectory, derivatives: RangeInclusive<usize
                 let witness = trajectory.seen_to_grow(axis, derivative, end_s);
                 return Bounded::Unbounded { derivative, witness };
             }
+            None if matches!(trajectory.paths().get(axis), Some(Path::Spline(_))) => found = Bounded::Jumps,
             None => found = Bounded::NotShown,
         }
     }

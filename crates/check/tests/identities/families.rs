@@ -10,7 +10,7 @@ use forwardstep_check::derivation::formula::Formula;
 use forwardstep_check::derivation::polynomial::Polynomial;
 use forwardstep_check::derivation::{Line, explain};
 use forwardstep_core::reference::{
-    Choice, Consensus, Exchange as Told, Heard, Measured, Position, PositionVelocity, PureIntegral, Reference,
+    Choice, Consensus, Exchange as Exchanged, Heard, Measured, Position, PositionVelocity, PureIntegral, Reference,
     ReferenceOut, SmoothFollowing,
 };
 use forwardstep_sim::delay::Delay;
@@ -113,7 +113,7 @@ pub(super) fn assert_all(case: &Case<'_>, what: &str, moment: &Moment) -> Upper 
 }
 
 /// The jets of a mass in the consensus family, whose z^(ℓ) the core gives.
-fn consensus_jets<X: Told>(setup: &Setup, outcome: &Outcome, at_row: [usize; 3]) -> Jets {
+fn consensus_jets<X: Exchanged>(setup: &Setup, outcome: &Outcome, at_row: [usize; 3]) -> Jets {
     let [agent, axis, row] = at_row;
     let own = motion(setup, outcome, agent, axis, row);
     let roots = &setup.agents[agent].roots_per_s;

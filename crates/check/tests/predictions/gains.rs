@@ -355,7 +355,7 @@ fn what_s_adds_is_said_with_its_numbers() {
             && numbers.iter().any(|n| n.0 == "drift_per_s" && n.1 > 0.0)
     );
     // A hand's push is known only along the run.
-    let hand = Effect::HandOnAxes {
+    let hand = Effect::SpringOnAxes {
         axes: vec![0],
         stiffness: vec![1.0],
         damping: vec![0.0],

@@ -127,7 +127,7 @@ fn what_rubs_and_what_pushes_are_told_apart_before_and_after_the_run() {
     let numbers = Finding::TrackingPower(before).numbers();
     assert!(numbers.contains(&("friction_w", before.friction_w)), "{numbers:?}");
     // A hand is known only along the run, and there only together with what rubs.
-    let effect = Effect::HandOnAxes {
+    let effect = Effect::SpringOnAxes {
         axes: vec![0],
         stiffness: vec![1.0],
         damping: vec![0.0],

@@ -38,8 +38,8 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         }
         // With ṡ held q̈ is ż + ṡ, and over the last period ṡ was what the velocity gained less what ż asked for.
         let accelerates = reference.sliding().is_some_and(|sliding| sliding.derived == Derived::Acceleration);
-        for (k, told) in out.told.iter_mut().enumerate() {
-            *told = match passed_s {
+        for (k, transmitted) in out.transmitted.iter_mut().enumerate() {
+            *transmitted = match passed_s {
                 Some(h) if accelerates => (measured.dq[k] - held.dq[k]) / h - out.dz[k],
                 _ => 0.0,
             };
@@ -63,8 +63,8 @@ impl<F: Reference> Kernel for Refer<'_, F> {
         reference.evaluate(m, measured, state, heard, reference_out)?;
         let Some(sliding) = reference.sliding() else { return Ok(()) };
         // ż does not depend on the sign where it is told.
-        for (told, dz) in out.told.iter_mut().zip(&out.dz) {
-            *told += dz;
+        for (transmitted, dz) in out.transmitted.iter_mut().zip(&out.dz) {
+            *transmitted += dz;
         }
         let Some(h) = passed_s else { return Ok(()) };
         let channel = |c: usize| held.sums.get(c * m..(c + 1) * m).unwrap_or_default();
@@ -72,7 +72,7 @@ impl<F: Reference> Kernel for Refer<'_, F> {
             None => [&held.q[..], &held.dq[..]],
             Some(held) => [held, held + 1].map(|block| state.get(block * m..(block + 1) * m).unwrap_or_default()),
         };
-        let own = [first, second, &out.told[..]];
+        let own = [first, second, &out.transmitted[..]];
         let inputs = SlidingInputs { own, degree: &held.degree, sums: [channel(0), channel(1), channel(2)] };
         sliding.argument(m, inputs, &mut out.e)?;
         let selection = state.len() - m;

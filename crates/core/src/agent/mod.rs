@@ -61,7 +61,7 @@ use kernels::{Learn, Refer, Track};
 /// What an agent knows of its neighbours at one instant: the sums that a linear design needs.
 ///
 /// A message of an agent with m axes is [`Exchange::CHANNELS`] · m numbers: its positions, then its velocities if they are
-/// sent, or what [`Agent::tell`] makes of them; then what the sender's [`Agent::told`] was at the sample before, if its design tells anything.
+/// sent, or what [`Agent::transmit`] makes of them; then what the sender's [`Agent::transmitted`] was at the sample before, if its design tells anything.
 #[derive(Clone, Copy, Debug)]
 pub struct Inbox<'a> {
     /// Σ_j w_ij.
@@ -167,7 +167,7 @@ struct Out {
     yt_s: Vec<f64>,
     d_theta_hat: Vec<f64>,
     /// For a set-valued sign: q̈ or ż, and what the sign is taken of.
-    told: Vec<f64>,
+    transmitted: Vec<f64>,
     e: Vec<f64>,
 }
 
@@ -198,7 +198,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
         LengthError::check("theta", p, theta_hat.len())?;
         LengthError::check("limits", m, limiter.axes())?;
         let n = reference.vectors() * m;
-        let told = reference.sliding().map_or(0, |sliding| sliding.told() * m);
+        let transmitted = reference.sliding().map_or(0, |sliding| sliding.transmitted() * m);
         let vector = || vec![0.0; m];
         Ok(Agent {
             scratch: robot.scratch(),
@@ -215,7 +215,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 q: vector(),
                 dq: vector(),
                 degree: [0.0],
-                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m + told],
+                sums: vec![0.0; <F::Exchange as Exchange>::CHANNELS * m + transmitted],
                 time_s: 0.0,
             },
             out: Out {
@@ -226,7 +226,7 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
                 tau: vector(),
                 yt_s: vec![0.0; p],
                 d_theta_hat: vec![0.0; p],
-                told: vec![0.0; told],
+                transmitted: vec![0.0; transmitted],
                 e: vector(),
             },
             applied: Applied { q: vector(), dq: vector(), z: vector(), dz: vector() },
@@ -246,8 +246,8 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     }
 
     /// What is transmitted at the next sample besides what is measured then: q̈ for (119), ż for (122), else nothing.
-    pub fn told(&self) -> &[f64] {
-        &self.out.told
+    pub fn transmitted(&self) -> &[f64] {
+        &self.out.transmitted
     }
 
     /// Turns q and q̇ as they are measured, an entry per axis each, into a message. Where messages are not measured it becomes
@@ -256,13 +256,13 @@ impl<R: Lagrangian<f64>, F: Reference> Agent<R, F> {
     ///
     /// # Errors
     /// [`LengthError`] when it has not as many entries as a message that is not measured.
-    pub fn tell(&self, message: &mut [f64]) -> Result<(), LengthError> {
+    pub fn transmit(&self, message: &mut [f64]) -> Result<(), LengthError> {
         let Some(held) = <F::Exchange as Exchange>::HELD else { return Ok(()) };
         let m = self.held.q.len();
-        let told = <F::Exchange as Exchange>::CHANNELS * m;
-        LengthError::check("message", told, message.len())?;
+        let transmitted = <F::Exchange as Exchange>::CHANNELS * m;
+        LengthError::check("message", transmitted, message.len())?;
         if self.started {
-            message.copy_from_slice(&self.state[held * m..held * m + told]);
+            message.copy_from_slice(&self.state[held * m..held * m + transmitted]);
         } else {
             self.reference.initial_message(&self.wanted, message);
         }

@@ -314,8 +314,8 @@ mod tests {
             [[2, 1, 1, 1, 1], [1, 2, 1, 1, 1], [1, 1, 0, 1, 1], [1, 1, 1, 0, 1], [1, 1, 1, 1, 2]]
         {
             let target = vec![[0.0; 5]; target];
-            let (mut input, mut d_state, mut told) = (vec![0.0; input], vec![0.0; rate], vec![0.0; shown]);
-            let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut told };
+            let (mut input, mut d_state, mut diagnostics) = (vec![0.0; input], vec![0.0; rate], vec![0.0; shown]);
+            let asked = ControllerOutput { input: &mut input, d_state: &mut d_state, shown: &mut diagnostics };
             let heard = Heard::new(&[], &[0.0], 1).unwrap();
             let given = ControllerInput { measured: law.see(&[1.0]).unwrap(), heard, target: Jets::from(&target[..]) };
             assert!(law.evaluate(&mut (), given, &vec![0.0; state], asked).is_err());

@@ -204,9 +204,9 @@ fn highest(from: f64, to: f64, close: f64, bound: impl Fn(f64, f64) -> f64, valu
         let middle = from + 0.5 * (to - from);
         let gap = highest - taken;
         // A sign is known, or has been seen to be none.
-        let told = highest <= 0.0 || taken > 0.0;
+        let decided = highest <= 0.0 || taken > 0.0;
         // What has no value somewhere has no gap either.
-        if gap.is_nan() || told && gap <= close * (taken - least) || middle <= from || middle >= to {
+        if gap.is_nan() || decided && gap <= close * (taken - least) || middle <= from || middle >= to {
             break;
         }
         stretches.pop();

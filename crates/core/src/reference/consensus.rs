@@ -121,8 +121,8 @@ impl<X: Exchange> Reference for Consensus<X> {
             let (dq, z) = (&measured.dq[columns.clone()], &state[columns.clone()]);
             for i in 0..n {
                 let (alpha_0, ratio) = (self.coefficients.alpha[i], self.coefficients.alpha_0_over_kappa_0[i]);
-                let told = X::term(heard.sums, columns.start + i, alpha_0, ratio);
-                rate[i] = self.coefficients.lambda[i].mul_add(dq[i] - z[i], told);
+                let received = X::term(heard.sums, columns.start + i, alpha_0, ratio);
+                rate[i] = self.coefficients.lambda[i].mul_add(dq[i] - z[i], received);
             }
             for r in 0..=order {
                 let x = match r {

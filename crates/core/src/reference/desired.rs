@@ -223,9 +223,9 @@ impl DesiredDynamics {
             WrittenIn::Measured | WrittenIn::Z => z(r + 1 - plant),
             WrittenIn::X => 0.0,
         };
-        let told = X::term(sums, entry, self.heard[0], self.heard[1]);
+        let received = X::term(sums, entry, self.heard[0], self.heard[1]);
         d_state[top * block + entry] = match target {
-            None => (0..order).fold(told, |rate, r| self.coefficient(r, degree).neg_mul_add(written(r), rate)),
+            None => (0..order).fold(received, |rate, r| self.coefficient(r, degree).neg_mul_add(written(r), rate)),
             Some(target) => {
                 let desired = |r: usize| target.get(r).copied().unwrap_or(f64::NAN);
                 let mut rate = desired(order);
@@ -233,7 +233,7 @@ impl DesiredDynamics {
                     rate -= own * (written(r) - desired(r));
                 }
                 let coupled = self.coupled.iter().enumerate();
-                coupled.fold(rate + told, |rate, (r, coupled)| (degree * coupled).neg_mul_add(written(r), rate))
+                coupled.fold(rate + received, |rate, (r, coupled)| (degree * coupled).neg_mul_add(written(r), rate))
             }
         };
         let Some(tape) = &self.protocol else { return Ok(()) };

@@ -235,8 +235,8 @@ impl Reference for Following {
         for k in 0..block {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             // −(α + d) q̇ − d α q + Σ w (q̇_j + α q_j) − γ ς
-            let told = alpha.mul_add(heard.sums.q[k], heard.sums.dq[k]);
-            let own = (alpha + d).neg_mul_add(dq, (d * alpha).neg_mul_add(q, told));
+            let received = alpha.mul_add(heard.sums.q[k], heard.sums.dq[k]);
+            let own = (alpha + d).neg_mul_add(dq, (d * alpha).neg_mul_add(q, received));
             let dz = gamma.neg_mul_add(selection[k], own);
             out.z[k] = z[k];
             out.dz[k] = dz;
@@ -300,14 +300,14 @@ impl Reference for SmoothFollowing {
         for k in 0..block {
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[k % self.agents]);
             let own = alpha.mul_add(q, beta * dq);
-            let told = alpha.mul_add(heard.sums.q[k], beta * heard.sums.dq[k]);
+            let received = alpha.mul_add(heard.sums.q[k], beta * heard.sums.dq[k]);
             // ż and ṗ without what is left out of them, or scaled, for a swarm.
             let apart = d.neg_mul_add(dq, heard.sums.dq[k]);
             let dz = coupling.mul_add(apart, p[k]) - by_itself * own;
             out.z[k] = z[k];
             out.dz[k] = dz;
             out.d_state[k] = dz;
-            out.d_state[block + k] = gamma.neg_mul_add(selection[k], coupling * d.neg_mul_add(own, told));
+            out.d_state[block + k] = gamma.neg_mul_add(selection[k], coupling * d.neg_mul_add(own, received));
             out.d_state[2 * block + k] = 0.0;
         }
         Ok(())

@@ -130,8 +130,8 @@ impl Reference for Observer {
         for k in 0..block {
             let d = heard.degree[k % self.agents];
             // −(α + d) v̂ − d α x̂ + Σ w (v̂_j + α x̂_j) − γ ς
-            let told = alpha.mul_add(x_heard[k], v_heard[k]);
-            let own = (alpha + d).neg_mul_add(v[k], (d * alpha).neg_mul_add(x[k], told));
+            let received = alpha.mul_add(x_heard[k], v_heard[k]);
+            let own = (alpha + d).neg_mul_add(v[k], (d * alpha).neg_mul_add(x[k], received));
             let dv = gamma.neg_mul_add(selection[k], own);
             out.z[k] = self.kappa.neg_mul_add(measured.q[k] - x[k], v[k]);
             out.dz[k] = self.kappa.neg_mul_add(measured.dq[k] - v[k], dv);

@@ -109,13 +109,13 @@ impl<X: Exchange> Reference for PureIntegral<X> {
             let [alpha_0, alpha_1] = [0, 1].map(|r| self.coefficients.alpha(r)[i]);
             let (ratio, lambda) = (self.coefficients.alpha_0_over_kappa_0[i], self.coefficients.lambda[i]);
             let (q, dq, d) = (measured.q[k], measured.dq[k], heard.degree[i]);
-            let told = X::term(heard.sums, k, alpha_0, ratio);
+            let received = X::term(heard.sums, k, alpha_0, ratio);
             // −(α₁ + d) q̇ − (α₀ + d α₁) q + η
             let dz = (alpha_1 + d).neg_mul_add(dq, d.mul_add(alpha_1, alpha_0).neg_mul_add(q, eta[k]));
             out.z[k] = z[k];
             out.dz[k] = dz;
             z_rate[k] = dz;
-            eta_rate[k] = (d * alpha_0).neg_mul_add(q, lambda.mul_add(dq - z[k], told));
+            eta_rate[k] = (d * alpha_0).neg_mul_add(q, lambda.mul_add(dq - z[k], received));
         }
         Ok(())
     }
@@ -170,7 +170,8 @@ mod tests {
         // ż is linear in q, q̇ and η, so its derivative is the same function of q̇, q̈ and η̇.
         let [q, dq, ddq, z, eta, q_j, dq_j] = [0.3, -0.7, 1.9, 0.4, -1.1, 0.8, -0.2];
         let own = ddq + (ALPHA + BETA) * dq + ALPHA * BETA * q;
-        let literal = |told: f64| -(ALPHA + BETA) * ddq - ALPHA * BETA * dq - W * (own - told) + LAMBDA * (dq - z);
+        let literal =
+            |received: f64| -(ALPHA + BETA) * ddq - ALPHA * BETA * dq - W * (own - received) + LAMBDA * (dq - z);
 
         let sums = PositionVelocitySums { q: &[W * q_j], dq: &[W * dq_j] };
         let [dz, z_rate, eta_rate] = evaluate::<PositionVelocity>(sums, [q, dq, z, eta]);

@@ -91,7 +91,7 @@ pub struct SlidingInputs<'a> {
 
 impl Sliding {
     /// Vectors that are transmitted besides what is measured.
-    pub fn told(&self) -> usize {
+    pub fn transmitted(&self) -> usize {
         match self.derived {
             Derived::Acceleration | Derived::ReferenceAcceleration => 1,
             Derived::Nothing | Derived::Composite => 0,

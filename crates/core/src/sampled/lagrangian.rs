@@ -119,15 +119,15 @@ where
     }
 
     fn message_len(&self) -> usize {
-        self.sent + self.agent.told().len()
+        self.sent + self.agent.transmitted().len()
     }
 
     fn message(&self, now_s: f64, measured: &[f64], out: &mut [f64]) -> Result<(), StepError> {
         LengthError::check("message", self.message_len(), out.len())?;
         let (own, computed) = out.split_at_mut(self.sent);
         self.sensing.head(now_s, measured, own)?;
-        self.agent.tell(own)?;
-        computed.copy_from_slice(self.agent.told());
+        self.agent.transmit(own)?;
+        computed.copy_from_slice(self.agent.transmitted());
         Ok(())
     }
 

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
-use forwardstep::check::{Injection, Report};
+use forwardstep::check::Injection;
 use forwardstep::io::output::names::{agent_name, gap_unit, limits_by_itself, torque_words, unit};
 use forwardstep::io::output::{
-    Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Metrics, RunRecord, WatchedMargin,
+    Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Load, Metrics, RunRecord, WatchedMargin,
     coarse_rows,
 };
 use forwardstep::io::{instant, shown};
@@ -38,7 +38,7 @@ pub(crate) fn summary(
     files: &[PathBuf],
 ) -> String {
     let RunRecord { setup, outcome, .. } = record;
-    let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record.verdicts))];
+    let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record))];
     if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
         rows.push(("in words", sentence));
         rows.extend(advice.into_iter().map(|line| ("to change", line)));
@@ -72,6 +72,7 @@ pub(crate) fn summary(
         let value = with_unit(peak.value.abs(), &unit);
         rows.push(("peak torque", format!("{value}, {agent}, {axis} at {} s", instant(peak.t_s))));
     }
+    rows.extend(loads(setup, &metrics.peak_loads));
     if !metrics.limits_reached.is_empty() {
         rows.push((limits_words(&metrics.limits_reached), format!("{}, see the report", metrics.limits_reached.len())));
     }
@@ -105,6 +106,23 @@ pub(crate) fn summary(
     }
     let lines: Vec<_> = table.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
     lines.concat()
+}
+
+/// The largest thrust, rotor, torque and momentum of a wheel.
+fn loads(setup: &Setup, loads: &[Load]) -> Option<(&'static str, String)> {
+    let mut largest: Vec<&Load> = Vec::new();
+    for load in loads {
+        match largest.iter_mut().find(|known| known.kind == load.kind) {
+            Some(known) if load.peak.value.abs() > known.peak.value.abs() => *known = load,
+            Some(_) => {}
+            None => largest.push(load),
+        }
+    }
+    let words = largest.iter().map(|load| {
+        let value = with_unit(load.peak.value.abs(), &load.unit(setup));
+        format!("{}: {value}, {} at {} s", load.words(), agent_name(setup, load.peak.agent), instant(load.peak.t_s))
+    });
+    (!largest.is_empty()).then(|| ("peaks", words.collect::<Vec<_>>().join("; ")))
 }
 
 /// What became of the limits in a list of them.
@@ -186,8 +204,9 @@ fn short(value: f64) -> String {
     }
 }
 
-fn verdict(report: &Report) -> String {
-    format!("{}: {}", report.theorem, report.worst().words())
+fn verdict(record: &RunRecord<'_>) -> String {
+    let report = record.verdicts;
+    [vec![format!("{}: {}", report.theorem, report.worst().words())], record.failures()].concat().join("; ")
 }
 
 /// What remains at the end, by name.

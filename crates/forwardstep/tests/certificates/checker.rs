@@ -13,9 +13,18 @@ fn pairs_that_were_tampered_with_are_judged_as_the_truth_says() {
     for scenario in SHIPPED_SCENARIOS.iter().map(|scenario| scenario.name) {
         certified(file_of(scenario).to_str().unwrap(), folder.path());
     }
-    for case in
-        ["formulas", "cut", "friction", "bounds", "desired-target", "logs", "slider", "drawn-graph", "model-reference"]
-    {
+    for case in [
+        "formulas",
+        "cut",
+        "friction",
+        "bounds",
+        "desired-target",
+        "logs",
+        "slider",
+        "drawn-graph",
+        "model-reference",
+        "tip-velocity",
+    ] {
         certified(root().join(format!("checker/cases/{case}.toml")).to_str().unwrap(), folder.path());
     }
     let output = python(&["-m", "unittest", "test_checker"], folder.path());

@@ -3,6 +3,8 @@
 use std::fs;
 
 use crate::support::{folder, forwardstep, stderr, stdout};
+use forwardstep::io::scenario::SHIPPED_SCENARIOS;
+use serde_json::Value;
 
 /// Point masses on a line, from these places, under a known law.
 fn masses(places: &str, count: usize, end_s: &str, reference: &str, network: &str) -> String {
@@ -123,6 +125,24 @@ fn regress_a_desired_design_is_recognised_whatever_root_is_first() {
     assert!(said.contains("given by coefficients, of which no roots are computed"), "{said}");
     let said = check(&roots("[1, 2]"), "{ roots_per_s = [1, 2] }", "[2]", "smoothness");
     assert!(said.contains("promised: no jump") && !said.contains("promised: nothing"), "{said}");
+    // κ₀ is the root that is heard with velocities, wherever it stands.
+    let course = |reference: &str| {
+        fs::write(folder.path().join("m.toml"), masses("[[0], [1], [3]]", 3, "20", reference, "edges.ring = {}"))
+            .unwrap();
+        stdout(&forwardstep(&folder, &["run", "m.toml", "--force"]).success());
+        let summary = fs::read_to_string(folder.path().join("forwardstep-runs/m/summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&summary).unwrap();
+        summary["prediction"]["course"]["found"]["settled_s"].as_f64().unwrap()
+    };
+    let designed = |roots: &str| {
+        course(&format!("[reference.consensus]\nroots_per_s = {roots}\nexchange = \"position_velocity\""))
+    };
+    let desired = course(
+        "[reference.desired]\npolynomial = { integrators = 1, roots_per_s = [1, 3] }\n\
+         coupling_polynomial = { roots_per_s = [1, 3] }\nheard = [3, 1]",
+    );
+    let (first, second) = (designed("[3, 1]"), designed("[1, 3]"));
+    assert!((desired - first).abs() < 1e-9 && (first - second).abs() > 0.1, "{desired}, {first}, {second}");
 }
 
 /// The factor of a chain in pure feedback is no ψ alone, and no other ψ makes more known of it.
@@ -136,6 +156,41 @@ fn regress_no_other_psi_is_advised_for_slopes() {
     let said = stdout(&forwardstep(&folder, &["check", "p.toml"]));
     assert!(said.contains("it is ψ times the slopes") && said.contains("`robot.strict_feedback` for p-1"), "{said}");
     assert!(!said.contains("cosine"), "{said}");
+}
+
+/// Where a curve through points joins rest its third derivative jumps; that its fourth is bounded was said to hold.
+#[test]
+fn regress_the_fourth_derivative_of_a_curve_through_points_is_not_said_to_be_bounded() {
+    let folder = folder();
+    fs::write(folder.path().join("points.csv"), "t_s,x\n0,0\n4,1\n8,3\n").unwrap();
+    let check = |order: usize, roots: &str| {
+        let text = format!(
+            "format = 2\ntitle = \"c\"\ntime.end_s = 10\n[[agents]]\nname = \"c\"\nrobot.chain = {{ order = {order}, chi = \"0\", psi = \"1\" }}\n\
+             start.position = [0]\ntarget.csv.file = \"points.csv\"\n[reference.tracking]\nroots_per_s = {roots}\n[law.linearising]\n"
+        );
+        fs::write(folder.path().join("c.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["check", "c.toml"]))
+    };
+    let said = check(3, "[1, 2, 3]");
+    assert!(said.contains("all in all: holds"), "{said}");
+    let said = check(4, "[1, 2, 3, 4]");
+    assert!(said.contains("its third derivative jumps, so that the fourth has no bound"), "{said}");
+    assert!(said.contains("all in all: not shown (bounded-target)"), "{said}");
+}
+
+/// An end-effector that turns about an axis from an attitude of its own has a quaternion of norm 1, which was not shown to stay away from zero.
+#[test]
+fn regress_the_quaternion_of_a_pose_that_turns_is_known_to_keep_its_norm() {
+    let folder = folder();
+    let text = SHIPPED_SCENARIOS.iter().find(|scenario| scenario.name == "pose-ur5e").unwrap().text;
+    let (before, rest) = text.split_once("target.formulas").unwrap();
+    let (_, after) = rest.split_once("[agents.robot.urdf]").unwrap();
+    let target = "target.pose = { position = [\"-0.60 + 0.06*cos(0.8*t)\", -0.3, 0.3], attitude = { axis = [1, 0.2, 0], angle_rad = 3 }, \
+                  turning = { axis = [0.1, 0, 1], rad_per_s = 0.05 } }\n";
+    fs::write(folder.path().join("p.toml"), format!("{before}{target}[agents.robot.urdf]{after}")).unwrap();
+    let said = stdout(&forwardstep(&folder, &["check", "p.toml"]));
+    assert!(said.contains("all in all: watched during the run"), "{said}");
+    assert!(said.contains("holds: the quaternion that arm is to follow is never zero"), "{said}");
 }
 
 /// Values that are small, and times, have digits.
@@ -181,4 +236,71 @@ fn regress_what_failed_in_a_run_is_said_beside_its_hypothesis() {
             && page.contains("Angular velocity and reference")
             && page.contains("nothing: no agent hears another")
     );
+    // What ends a run is named in the table at its end, at the top of the page, and beside its hypothesis.
+    let text = "format = 2\ntitle = \"v\"\ntime = { end_s = 10, record_every_s = 0.02 }\n[[agents]]\nname = \"p\"\n\
+                robot.chain = { order = 2, chi = \"0\", psi = \"1 - 0.5*x\" }\nstart.position = [0]\n\
+                target.formulas = [\"3*(1-cos(0.5*t))\"]\n[reference.tracking]\nroots_per_s = [1, 2]\n[law.linearising]\n";
+    fs::write(folder.path().join("v.toml"), text).unwrap();
+    let run = forwardstep(&folder, &["run", "v.toml", "--out", "v"]).code(3);
+    let said = stdout(&run);
+    let verdict = said.lines().find(|line| line.trim_start().starts_with("verdict")).unwrap();
+    assert!(verdict.ends_with("watched during the run; [input-factor]: it failed, at t = 2.551 s"), "{verdict}");
+    assert!(stderr(&run).contains("choose a target that stays away from there, start elsewhere, or"), "{run}");
+    let page = fs::read_to_string(folder.path().join("v/report.html")).unwrap();
+    assert!(page.contains("<span class=\"bad\">[input-factor]: it failed, at t = 2.551 s</span>"));
+    assert!(page.contains("in this run it failed, at t = 2.551 s") && !page.contains("this run reached its horizon"));
+    let compared = stdout(&forwardstep(&folder, &["compare", "v", "craft", "--json"]));
+    assert!(compared.contains("watched during the run: input-factor; [input-factor]: it failed, at"), "{compared}");
+}
+
+/// The filter of backstepping adds to V what its output is off by, so that nothing balances; of others it does.
+#[test]
+fn regress_no_balance_is_drawn_of_backstepping() {
+    let folder = folder();
+    for (scenario, balances) in [("backstepping", false), ("theorem-1", true)] {
+        forwardstep(&folder, &["run", scenario, "--out", scenario]).success();
+        let file = |name: &str| fs::read_to_string(folder.path().join(scenario).join(name)).unwrap();
+        let summary: Value = serde_json::from_str(&file("summary.json")).unwrap();
+        assert_eq!(summary["metrics"]["balance_residual"].is_object(), balances, "{scenario}");
+        assert_eq!(file("report.html").contains("Lyapunov balance"), balances, "{scenario}");
+    }
+}
+
+/// Thrusts, rotors and wheels had no peaks, and a run without torques was said to have recorded nothing.
+#[test]
+fn regress_thrusts_rotors_and_wheels_have_peaks() {
+    let folder = folder();
+    for (scenario, words, cell) in [
+        ("thrust-continuous", "thrust: 17.9 N, vehicle-2 at 3.30 s", "thrust"),
+        ("formation", "rotor 1: 6.95 N, right at 0.00 s", "rotor 4"),
+        ("theorem-7", "momentum of wheel 2: 2.10 N m s, craft at 3.00 s", "torque of wheel 1"),
+    ] {
+        let said = stdout(&forwardstep(&folder, &["run", scenario, "--out", scenario]));
+        assert!(said.contains(words), "{said}");
+        let page = fs::read_to_string(folder.path().join(scenario).join("report.html")).unwrap();
+        let (_, loads) = page.split_once("Peaks of thrusts and wheels").unwrap();
+        assert!(
+            loads.contains(&format!("<th>{cell}</th>")) && !page.contains("No torques or forces were"),
+            "{scenario}"
+        );
+        // Of rotors and wheels limits are known, so that their share is said.
+        let (loads, _) = loads.split_once("</table>").unwrap();
+        assert_eq!(loads.contains(" %</span>"), scenario != "thrust-continuous", "{loads}");
+    }
+}
+
+/// Of many predicted torques the largest are in the table, not the first.
+#[test]
+fn regress_the_largest_predicted_torques_are_on_the_page() {
+    let folder = folder();
+    let places: Vec<String> = (0..30).map(|k| format!("[{}]", k * k)).collect();
+    let reference = "[reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"";
+    let text = masses(&format!("[{}]", places.join(", ")), 30, "5", reference, "edges.complete = {}");
+    fs::write(folder.path().join("m.toml"), text).unwrap();
+    forwardstep(&folder, &["run", "m.toml", "--predict"]);
+    let page = fs::read_to_string(folder.path().join("forwardstep-runs/m/report.html")).unwrap();
+    let (_, table) = page.split_once("predicted with the true parameters along the reference").unwrap();
+    let (table, _) = table.split_once("The largest 24 of 30; summary.json has all.").unwrap();
+    assert!(table.contains("m-30 ·") && table.contains("m-1 ·") && !table.contains("m-15 ·"), "{table}");
+    assert!(table.find("m-1 ·") < table.find("m-30 ·"), "{table}");
 }

@@ -38,7 +38,9 @@ const csvOf = (plot) => {
   // Times may be a typed array, whose own map() would make numbers of the lines.
   const own = recordedIn(plot);
   const rows = Array.from(own[0], (t, i) => [t, ...series.map(({ k }) => single(own[k][i]))].join(","));
-  return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, s)))].join(","), ...rows, ""].join("\n");
+  // A table that left the page does not say what was chosen on it.
+  const named = (s) => ({ ...s, label: [s.label, plot.chosen].filter(Boolean).join(" · ") });
+  return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, named(s))))].join(","), ...rows, ""].join("\n");
 };
 
 const TABLE_ROWS = 13;
@@ -94,6 +96,7 @@ const wholeTitleOf = (card) => [titleOf(card), chosenOf(card)].filter(Boolean).j
 const offer = (card, plot) => {
   card.querySelector(".exports")?.remove();
   const title = wholeTitleOf(card);
+  plot.chosen = chosenOf(card);
   const canvas = card.querySelector(".canvas");
   canvas.setAttribute("role", "img");
   labelled(card, plot);

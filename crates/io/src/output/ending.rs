@@ -111,8 +111,10 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
             };
             // A period that is too long brings everything out of step, and is looked at first.
             let faster = if setup.control.is_some() { "sample faster, " } else { "" };
+            let has_target = setup.agents.get(breakdown.agent).is_some_and(|agent| agent.target.is_some());
+            let target = if has_target { "choose a target that stays away from there, " } else { "" };
             format!(
-                "is {}{unit}: the law divides by {what} must stay away from zero by {}{unit}; {faster}start elsewhere, or choose \
+                "is {}{unit}: the law divides by {what} must stay away from zero by {}{unit}; {faster}{target}start elsewhere, or choose \
                  slower gains",
                 text::number(*value),
                 text::number(floor.abs())

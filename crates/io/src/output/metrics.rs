@@ -2,7 +2,7 @@
 
 use forwardstep_sim::recording::{Outcome, Recording, Signal};
 use forwardstep_sim::reference::Backstepping;
-use forwardstep_sim::{LineValue, RotorcraftModel, Setup};
+use forwardstep_sim::{LineValue, Setup};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -10,6 +10,7 @@ use forwardstep_check::prediction::only_passes;
 
 use super::disagreement::greater;
 pub use super::disagreement::{Absence, Disagreement, DisagreementSeries, Gap};
+use super::loads::{Load, loads, rotor_thrusts};
 use super::number;
 use super::practical::Watched;
 use super::table::Table;
@@ -44,6 +45,9 @@ pub struct Metrics {
     pub speed: Option<Speed>,
     /// The largest |τ| of every agent and axis, at the rows that are recorded.
     pub peak_torques: Vec<Peak>,
+    /// The same of what acts or is taken up without an axis: thrusts, rotors, wheels.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub peak_loads: Vec<Load>,
     /// Limits that were exceeded, or reached where they are enforced, at the rows that are recorded.
     pub limits_reached: Vec<LimitReached>,
     /// How well V + ∫ dissipation = V(0) holds; absent where the balance is not computed.
@@ -248,6 +252,7 @@ impl Metrics {
             },
             speed: speed(&table),
             peak_torques: table.axes(Signal::Torque).filter_map(|(i, axis, tau)| peak(&table, i, axis, tau)).collect(),
+            peak_loads: loads(&table),
             limits_reached: limits_reached(&table),
             balance_residual: balance_residual(&table),
             agreement: if series.is_ok() { predicted.and_then(|p| agreement(&table, p)) } else { None },
@@ -257,7 +262,8 @@ impl Metrics {
 }
 
 /// The largest |value| of a column with its sign, the first of equals; a value that is not a number wins.
-fn peak(table: &Table<'_>, agent: usize, axis: usize, values: &[f64]) -> Option<Peak> {
+/// The first of the largest magnitudes of one column.
+pub(super) fn peak(table: &Table<'_>, agent: usize, axis: usize, values: &[f64]) -> Option<Peak> {
     let worse = |(_, best): (_, &f64), (_, next): (_, &f64)| next.abs() > best.abs() || next.is_nan() && !best.is_nan();
     let (t_s, value) = table.t_s.iter().zip(values).reduce(|best, next| if worse(best, next) { next } else { best })?;
     Some(Peak { agent, axis, t_s: *t_s, value: *value })
@@ -331,19 +337,12 @@ const ROTOR_ROUNDING: f64 = 1e-9;
 
 /// The rotors of a rotorcraft that stood at their limits; they keep to them in any case.
 fn rotors(table: &Table<'_>, agent: usize) -> Vec<LimitReached> {
-    let model = table.setup.agents.get(agent).and_then(|agent| agent.robot.kind.downcast::<RotorcraftModel>());
-    let Some(rotors) = model.and_then(|model| model.rotors) else { return Vec::new() };
-    let column = |signal, entry| table.column(agent, signal, entry);
-    let torque = [0, 1, 2].map(|axis| column(Signal::Torque, axis));
-    let (Some(sigma), [Some(x), Some(y), Some(z)]) = (column(Signal::Thrust, 0), torque) else { return Vec::new() };
-    let rows = sigma.iter().zip(x).zip(y).zip(z);
-    let thrusts: Vec<[f64; 4]> = rows.map(|(((sigma, x), y), z)| rotors.thrusts(*sigma, [*x, *y, *z])).collect();
+    let Some((rotors, thrusts)) = rotor_thrusts(table, agent) else { return Vec::new() };
     let [least, most] = rotors.thrust;
     let slack = ROTOR_ROUNDING * (most - least);
-    let reached = (0..4).filter_map(|rotor| {
-        let values: Vec<f64> = thrusts.iter().map(|thrusts| thrusts[rotor].clamp(least, most)).collect();
+    let reached = thrusts.iter().enumerate().filter_map(|(rotor, values)| {
         let place = LimitReached::nowhere(agent, rotor, LimitKind::Rotor, true);
-        beyond(table.t_s, &values, rotors.thrust, place, Some([least + slack, most - slack]))
+        beyond(table.t_s, values, rotors.thrust, place, Some([least + slack, most - slack]))
     });
     reached.collect()
 }

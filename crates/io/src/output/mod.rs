@@ -48,6 +48,7 @@ mod injected;
 mod inputs;
 pub mod journal;
 mod leader;
+mod loads;
 mod metrics;
 pub mod names;
 mod number;
@@ -91,6 +92,7 @@ pub use guarantee::{Guarantee, GuaranteeFound, GuaranteedClass, GuaranteedFall, 
 pub use injected::{FirstInjection, Injected, InjectedCourse};
 pub use inputs::digest;
 pub use journal::{Journal, JournalError};
+pub use loads::Load;
 pub use metrics::{
     Absence, Agreement, BALANCE_FLOOR_J, BalanceResidual, Disagreement, DisagreementSeries, Gap, LimitKind,
     LimitReached, Metrics, Peak, Speed, coarse_rows,

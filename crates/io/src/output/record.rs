@@ -1,13 +1,15 @@
 //! Everything that is known about a finished run.
 
-use forwardstep_check::Report;
-use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome};
+use forwardstep_check::hypothesis::Subject;
+use forwardstep_check::{Answer, Hypothesis, Id, Report};
+use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome, Signal};
 use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::injected::{Injected, InjectedCourse};
 use super::metrics::{Gap, Metrics};
 use super::prediction::Predictions;
+use super::text::number;
 use crate::scenario::{Goal, InputFile};
 use crate::shapes::Shapes;
 
@@ -67,6 +69,33 @@ impl RunRecord<'_> {
     /// Whether somebody ended the run before its horizon, so that nothing is known of what would have come.
     pub fn is_undecided(&self) -> bool {
         matches!(self.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })
+    }
+
+    /// That a hypothesis that is watched during the run failed in it, and when, as a clause; `None` where it did not.
+    pub fn failed(&self, hypothesis: &Hypothesis) -> Option<String> {
+        if hypothesis.id == Id::SignGain {
+            let until_s = self.outcome.statistics.drive?.exceeds_until_s?;
+            return Some(format!("γ was too small until t = {} s, and large enough from then on", number(until_s)));
+        }
+        let Ending::BrokeDown(breakdown) = &self.outcome.ending else { return None };
+        let is_cause = match breakdown.signal {
+            Signal::Thrust => hypothesis.id == Id::NonzeroThrust,
+            Signal::Divisor => hypothesis.id == Id::InputFactor,
+            _ => hypothesis.id == Id::RegularJacobian,
+        };
+        let is_whose = match &hypothesis.subject {
+            Subject::Agent(agent) => agent.index == breakdown.agent,
+            _ => true,
+        };
+        let vanished = matches!(breakdown.cause, BreakdownCause::Vanished { .. });
+        (vanished && is_cause && is_whose).then(|| format!("it failed, at t = {} s", number(breakdown.t_s)))
+    }
+
+    /// Of the hypotheses that are watched during the run those that failed in it, with when.
+    pub fn failures(&self) -> Vec<String> {
+        let watched = self.verdicts.hypotheses.iter().filter(|hypothesis| hypothesis.answer() == Answer::Watched);
+        let named = |hypothesis: &Hypothesis| Some(format!("[{}]: {}", hypothesis.id.name(), self.failed(hypothesis)?));
+        watched.filter_map(named).collect()
     }
 
     /// What became of its goal: `met`, `missed` or `undecided`.

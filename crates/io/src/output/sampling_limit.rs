@@ -27,6 +27,9 @@ const TOLERANCE: f64 = 0.004;
 const LONGEST: f64 = 1024.0;
 /// Nor one with which a run has fewer samples: they would tell nothing.
 const FEWEST_SAMPLES: f64 = 10.0;
+/// Samples of a run by which the search for a rule begins, and the longest period with which it does, s.
+const BEGIN_SAMPLES: f64 = 2000.0;
+const LONGEST_BEGIN_S: f64 = 0.05;
 
 /// How the controllers of a scenario shall sample, where that is not as it states; exact measurements where it states nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -143,7 +146,9 @@ impl Deployment {
 
     /// The period up to which rules promise that samples are fast enough, s.
     pub fn rule(self, setup: &Setup) -> Option<Rule> {
-        let period_s = setup.control.as_ref().map_or(1e-3, |control| 1.0 / control.sample_hz);
+        // What is looked at takes as long as there are samples: where no period is stated, the search begins with few.
+        let unstated_s = LONGEST_BEGIN_S.min(setup.time.end_s / BEGIN_SAMPLES);
+        let period_s = setup.control.as_ref().map_or(unstated_s, |control| 1.0 / control.sample_hz);
         let hold = |period_s: f64| self.apply(setup, period_s).control.as_ref().map_or(Hold::IDEAL, Hold::of);
         let margin_s = SamplingMargin::longest_period_s(setup, period_s, hold);
         let linearised_s = if SamplingMargin::is_enough(&self.apply(setup, period_s)) {

@@ -319,7 +319,12 @@ impl fmt::Display for Notice {
             Notice::Rotation { agent, degrees, more } => {
                 let way = if *degrees > 180.0 { "long" } else { "short" };
                 let (turn, other) = (about(*degrees), about(360.0 - degrees));
-                write!(f, "{agent} turns by {turn}° to its target, the {way} way; from −q it would be {other}°")?;
+                write!(f, "{agent} turns by {turn}° to its target, ")?;
+                if turn.to_string() == other.to_string() {
+                    write!(f, "which is as far either way")?;
+                } else {
+                    write!(f, "the {way} way; from −q it would be {other}°")?;
+                }
                 match more {
                     0 => Ok(()),
                     1 => write!(f, "; 1 more spacecraft turns by no more"),

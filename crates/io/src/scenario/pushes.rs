@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use forwardstep_core::plant::total;
 use forwardstep_core::robot::tree::{Axes, LinkPoint};
 use forwardstep_core::signal::Signal;
-use forwardstep_sim::push::{Course, Effect, Grip, Push};
+use forwardstep_sim::push::{AttachmentPoint, Course, Effect, Push};
 use forwardstep_sim::{AgentSetup, Attachments, AxisUnit, SetupError};
 
 use super::agents::Agents;
@@ -188,13 +188,13 @@ impl Reader<'_, '_> {
     }
 
     /// Where a force acts. Without a link, the tip of a planar arm.
-    fn grip(
+    fn attachment(
         &self,
         link: Option<&At<String>>,
         at_m: Option<&At<[f64; 3]>>,
         axes: Option<&At<AxesFile>>,
         (held, instead): (&'static str, &'static str),
-    ) -> Result<Grip, Fault> {
+    ) -> Result<AttachmentPoint, Fault> {
         let agent = self.name();
         match (self.agent.robot.interface().attachments, self.body.tip) {
             (Attachments::PlanarTip, Some(tip)) => {
@@ -203,7 +203,7 @@ impl Reader<'_, '_> {
                     (Some(link), ..) => Err(fault(link, tip_only("link"))),
                     (_, Some(at_m), _) => Err(fault(at_m, tip_only("at_m"))),
                     (.., Some(axes)) if axes.value == AxesFile::Link => Err(fault(axes, tip_only("axes"))),
-                    _ => Ok(Grip::Tip(tip)),
+                    _ => Ok(AttachmentPoint::Tip(tip)),
                 }
             }
             (Attachments::Links(_), _) => {
@@ -223,7 +223,7 @@ impl Reader<'_, '_> {
                     Some(AxesFile::Link) => Axes::Link,
                 };
                 let at = at_m.map_or([0.0; 3], |at| at.value);
-                Ok(Grip::Link { point: LinkPoint { link: *anchor, at }, axes })
+                Ok(AttachmentPoint::Link { point: LinkPoint { link: *anchor, at }, axes })
             }
             (Attachments::Body | Attachments::Equations(_), _) => {
                 let does = self.acting();
@@ -235,18 +235,18 @@ impl Reader<'_, '_> {
 
     /// Force and torque, each with zeros for the other.
     fn wrench(&mut self, file: &WrenchFile) -> Result<Vec<Effect>, Fault> {
-        let grip = self.grip(file.link.as_ref(), file.at_m.as_ref(), file.axes.as_ref(), ("wrench", "force_n"))?;
-        let whole = grip.wrench_components();
-        let forces = grip.point_components();
+        let at = self.attachment(file.link.as_ref(), file.at_m.as_ref(), file.axes.as_ref(), ("wrench", "force_n"))?;
+        let whole = at.wrench_components();
+        let forces = at.point_components();
         let torques = if whole == 3 { &COORDINATES[2..] } else { &COORDINATES[..] };
         let mut effects = Vec::new();
         if let Some(force) = &file.force_n {
             let course = self.course("force_n", force, &COORDINATES[..forces])?;
-            effects.push(Effect::Wrench { grip, wrench: padded(course, 0, whole - forces) });
+            effects.push(Effect::Wrench { at, wrench: padded(course, 0, whole - forces) });
         }
         if let Some(torque) = &file.torque_n_m {
             let course = self.course("torque_n_m", torque, torques)?;
-            effects.push(Effect::Wrench { grip, wrench: padded(course, forces, 0) });
+            effects.push(Effect::Wrench { at, wrench: padded(course, forces, 0) });
         }
         if effects.is_empty() { Err(Fault::new(PushProblem::NoWrench)) } else { Ok(effects) }
     }
@@ -280,11 +280,11 @@ impl Reader<'_, '_> {
         }
         let target = self.on_axes(key, course, &axes)?;
         let damping = damping.unwrap_or_else(|| vec![0.0; axes.len()]);
-        Ok(Effect::HandOnAxes { axes, stiffness, damping, target })
+        Ok(Effect::SpringOnAxes { axes, stiffness, damping, target })
     }
 
     fn virtual_spring_on_point(&mut self, file: &VirtualSpringOnPointFile) -> Result<Effect, Fault> {
-        let grip = self.grip(
+        let at = self.attachment(
             file.link.as_ref(),
             file.at_m.as_ref(),
             None,
@@ -292,8 +292,8 @@ impl Reader<'_, '_> {
         )?;
         let stiffness = not_negative("stiffness_n_per_m", &file.stiffness_n_per_m)?;
         let damping = not_negative_or("damping_n_s_m", &file.damping_n_s_m, 0.0)?;
-        let target = self.course("target_m", &file.target_m, &COORDINATES[..grip.point_components()])?;
-        Ok(Effect::HandOnPoint { grip, stiffness, damping, target })
+        let target = self.course("target_m", &file.target_m, &COORDINATES[..at.point_components()])?;
+        Ok(Effect::SpringOnPoint { at, stiffness, damping, target })
     }
 
     /// The axes of these names; without any, all.

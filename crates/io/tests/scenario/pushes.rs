@@ -5,7 +5,7 @@ use std::path::Path;
 use forwardstep_core::robot::tree::Axes;
 use forwardstep_io::SourceText;
 use forwardstep_io::scenario::{Scenario, ScenarioError, read_scenario};
-use forwardstep_sim::push::{Between, Course, Effect, Function, Grip, Push};
+use forwardstep_sim::push::{AttachmentPoint, Between, Course, Effect, Function, Push};
 use forwardstep_sim::simulate;
 
 use super::{as_stated, read};
@@ -100,19 +100,21 @@ fn pushes_reach_the_agents_they_name() {
 
     // Force and torque apart, each with zeros for the other.
     for (push, want) in ur[1..3].iter().zip([[0.0, 0.0, 9.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]]) {
-        let Effect::Wrench { grip: Grip::Link { point, axes }, wrench } = &push.effect else { panic!("{push:?}") };
+        let Effect::Wrench { at: AttachmentPoint::Link { point, axes }, wrench } = &push.effect else {
+            panic!("{push:?}")
+        };
         assert_eq!((numbers(wrench).as_slice(), point.at, *axes), (&want[..], [0.0, 0.0, 0.1], Axes::Link));
         // tool0 is rigid with the last joint that is not locked.
         assert_eq!(point.link.body, Some(1));
     }
     for (push, want) in second[1..3].iter().zip([[3.0, 4.0, 0.0], [0.0, 0.0, 0.5]]) {
-        let Effect::Wrench { grip: Grip::Tip(tip), wrench } = &push.effect else { panic!("{push:?}") };
+        let Effect::Wrench { at: AttachmentPoint::Tip(tip), wrench } = &push.effect else { panic!("{push:?}") };
         assert_eq!((numbers(wrench).as_slice(), tip.length_m), (&want[..], [1.0, 0.8]));
     }
 
-    let Effect::HandOnAxes { axes, stiffness, damping, target } = &first[2].effect else { panic!("{first:?}") };
+    let Effect::SpringOnAxes { axes, stiffness, damping, target } = &first[2].effect else { panic!("{first:?}") };
     assert_eq!((axes, stiffness, damping, numbers(target)), (&vec![1], &vec![40.0], &vec![3.0], vec![0.0, 1.0]));
-    let Effect::HandOnPoint { stiffness, damping, target, .. } = &ur[3].effect else { panic!("{ur:?}") };
+    let Effect::SpringOnPoint { stiffness, damping, target, .. } = &ur[3].effect else { panic!("{ur:?}") };
     assert_eq!((*stiffness, *damping, numbers(target)), (200.0, 20.0, vec![0.4, 0.1, 0.5]));
 }
 
@@ -196,7 +198,7 @@ fn what_acts_on_a_kind_stands_where_its_equations_take_it() {
     // Forces on the axes, then torques on the body.
     assert_eq!(torques(&crafts[0]), [vec![0.0, 0.0, 0.0, 0.1, 0.2, 0.3], vec![1.0, 2.0, 3.0, 0.0, 0.0, 0.0]]);
     assert_eq!([&crafts[1], &crafts[2]].map(|own| torques(own)), [[vec![1.0, 2.0, 3.0]], [vec![1.0, 2.0, 3.0]]]);
-    let hand = |push: &Push| matches!(&push.effect, Effect::HandOnAxes { axes, .. } if *axes == [2]);
+    let hand = |push: &Push| matches!(&push.effect, Effect::SpringOnAxes { axes, .. } if *axes == [2]);
     assert!(hand(&crafts[0][2]) && hand(&crafts[2][1]));
     assert_eq!(torques(&chains[0]), [[0.5]]);
     assert_eq!(torques(&chains[1]), [[0.0, 1.0, 0.0, 2.0]]);
@@ -221,7 +223,7 @@ fn arms_that_differ_are_held_at_their_own_tips() {
     let agents = pushes(&text.replace("on = [\"arm-2\"]", "on = [\"arm\"]"));
     let tip = |pushes: &[Push]| {
         pushes.iter().find_map(|push| match push.effect {
-            Effect::Wrench { grip: Grip::Tip(tip), .. } => Some(tip.length_m),
+            Effect::Wrench { at: AttachmentPoint::Tip(tip), .. } => Some(tip.length_m),
             _ => None,
         })
     };

@@ -260,7 +260,7 @@ fn the_way_round_is_the_one_that_is_asked_for_and_is_said() {
     for key in ["shortest", "longest", "as_stated"] {
         let scenario = started(&format!("attitude = [0, 1, 0, 0]\nrotation = \"{key}\"\n"));
         assert_eq!(scenario.setup.agents[0].start.q, [0.0, 1.0, 0.0, 0.0]);
-        assert!(scenario.notices[0].to_string().contains("turns by 180° to its target, the short way"));
+        assert!(scenario.notices[0].to_string().contains("turns by 180° to its target, which is as far either way"));
     }
 }
 

@@ -25,9 +25,9 @@ pub(super) fn argument(
     e: &mut [f64],
 ) -> Result<(), LengthError> {
     let (Some(sliding), block) = (reference.sliding(), l.block()) else { return Ok(()) };
-    let told = reference.told();
-    let first = told.held.map_or(0, |held| l.reference + held * block);
-    let channels = told.channels();
+    let transmitted = reference.transmitted();
+    let first = transmitted.held.map_or(0, |held| l.reference + held * block);
+    let channels = transmitted.channels();
     // Of a channel that is not heard nothing is read.
     let channel = |columns: &'_ [f64], c: usize| -> Range<usize> {
         if c < channels { c * block..(c + 1) * block } else { columns.len()..columns.len() }

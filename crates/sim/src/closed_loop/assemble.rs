@@ -19,7 +19,7 @@ use super::leader_block::LeaderBlock;
 use super::members::batches;
 use super::pushes::Pushes;
 use super::recipes::built;
-use super::references::Told;
+use super::references::Transmission;
 use super::sampling::Sampling;
 use super::sliding::{Place, Slider};
 use super::valid::{message_len, validate};
@@ -82,7 +82,7 @@ impl<'a> ClosedLoop<'a> {
     /// Checks a setup and builds its closed loop.
     pub(crate) fn new(setup: &'a Setup) -> Result<Self, SetupError> {
         validate(setup)?;
-        let told = Told::of(setup.exchange);
+        let transmitted = Transmission::of(setup.exchange);
         let axes = setup.agents[0].robot.axes.len();
         let following = setup.following();
         let sliding = following.map(|following| following.sliding());
@@ -113,10 +113,10 @@ impl<'a> ClosedLoop<'a> {
             external = outside.end;
             let first = closed_loop.start.len();
             columns.append_start(&setup.agents, &mut closed_loop.start);
-            let told = first + columns.message();
+            let transmitted = first + columns.message();
             for (i, &agent) in group.iter().enumerate() {
                 closed_loop.ports[agent] =
-                    Port { state: told + i, entry: placed * entries + i, degree: placed + i, stride: n };
+                    Port { state: transmitted + i, entry: placed * entries + i, degree: placed + i, stride: n };
             }
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),
@@ -130,15 +130,15 @@ impl<'a> ClosedLoop<'a> {
         // An agent that leads tells where it is.
         closed_loop.leader = setup.leader().and_then(|vertex| closed_loop.ports.get(vertex)).copied();
         if let Some(leader) = following.and_then(Following::motion) {
-            let told = following.filter(|following| following.design == FollowingDesign::Composite);
-            let composite = told.map(|following| [following.alpha, following.beta]);
+            let transmitted = following.filter(|following| following.design == FollowingDesign::Composite);
+            let composite = transmitted.map(|following| [following.alpha, following.beta]);
             let guide = Box::new(LeaderBlock::new(leader, composite, placed, setup.time.end_s)?);
             let first = closed_loop.start.len();
             guide.append_start(&setup.agents, &mut closed_loop.start);
-            let told = first + guide.message();
+            let transmitted = first + guide.message();
             let place = Port { state: first, entry: placed * entries, degree: placed, stride: 1 };
             closed_loop.leader = Some(place);
-            closed_loop.ports[placed] = Port { state: told, ..place };
+            closed_loop.ports[placed] = Port { state: transmitted, ..place };
             closed_loop.blocks.push(Block {
                 state: first..closed_loop.start.len(),
                 degree: placed..placed + 1,
@@ -148,7 +148,7 @@ impl<'a> ClosedLoop<'a> {
                 columns: guide,
             });
         }
-        closed_loop.start_references(setup, told.channels() * axes)?;
+        closed_loop.start_references(setup, transmitted.channels() * axes)?;
         if let (Some(following), Some(sliding), None) = (following, sliding, &setup.control) {
             let places = closed_loop.places();
             let states = closed_loop.start.len();

@@ -71,9 +71,9 @@ pub(crate) trait Columns {
     /// Where the values of its set-valued signs stand in its block, if it has any.
     fn selection(&self) -> Option<Range<usize>>;
     /// What a sign is taken of besides what is heard, q̈ or ż, in a column per axis; `dx` is what [`Columns::rates`] gave.
-    fn tell(&mut self, t_s: f64, dx: &[f64], told: &mut [f64]);
+    fn transmit(&mut self, t_s: f64, dx: &[f64], transmitted: &mut [f64]);
     /// What the signs are taken of, from what everybody tells and its weighted sums.
-    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]);
+    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, transmitted: [&[f64]; 2], e: &mut [f64]);
     /// Adds to the rates `dx` what these values of the signs do, where they are functions of the instant.
     fn add_sign_terms(&mut self, selection: &[f64], dx: &mut [f64]);
     /// Signals and axes of one member, in the order in which they are recorded.

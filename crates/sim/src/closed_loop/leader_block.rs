@@ -127,8 +127,8 @@ impl Columns for LeaderBlock {
 
     fn hold(&mut self, _: &[f64]) {}
 
-    fn tell(&mut self, t_s: f64, _: &[f64], told: &mut [f64]) {
-        self.put(t_s, 2, told);
+    fn transmit(&mut self, t_s: f64, _: &[f64], transmitted: &mut [f64]) {
+        self.put(t_s, 2, transmitted);
     }
 
     fn next_event_s(&self, after_s: f64) -> f64 {

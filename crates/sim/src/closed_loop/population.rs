@@ -146,7 +146,7 @@ impl Population {
     /// Fills the row of the member that was just seen.
     fn fill_row(&mut self, member: usize, x: &[f64]) -> Result<(), LengthError> {
         let (l, r, reference) = (self.layout, &mut self.record, &self.reference);
-        let (seen, told) = (&r.seen, reference.told());
+        let (seen, transmitted) = (&r.seen, reference.transmitted());
         let mut slots = r.row.iter_mut();
         let mut put = |value: f64| {
             if let Some(slot) = slots.next() {
@@ -155,9 +155,9 @@ impl Population {
         };
         seen.q.iter().chain(&seen.dq).chain(&seen.z).chain(&seen.dz).copied().for_each(&mut put);
         (2 * l.m..reference.derivatives() * l.m).for_each(|column| put(x[l.reference + column * l.n + member]));
-        if let Some(held) = told.held {
+        if let Some(held) = transmitted.held {
             let first = l.reference + held * l.block();
-            (0..told.channels() * l.m).for_each(|column| put(x[first + column * l.n + member]));
+            (0..transmitted.channels() * l.m).for_each(|column| put(x[first + column * l.n + member]));
         }
         if reference.sliding().is_some() {
             let held = &x[l.theta_hat - l.block()..l.theta_hat];
@@ -197,7 +197,7 @@ impl Columns for Population {
     }
 
     fn message(&self) -> usize {
-        let held = self.reference.told().held;
+        let held = self.reference.transmitted().held;
         held.map_or(0, |held| self.layout.reference + held * self.layout.block())
     }
 
@@ -314,17 +314,17 @@ impl Columns for Population {
         self.reference.sliding().map(|_| l.theta_hat - l.block()..l.theta_hat)
     }
 
-    fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
+    fn transmit(&mut self, _: f64, dx: &[f64], transmitted: &mut [f64]) {
         let l = self.layout;
         match self.reference.sliding().map(|sliding| sliding.derived) {
-            Some(Derived::Acceleration) => told.copy_from_slice(&dx[l.dq..l.reference]),
-            Some(Derived::ReferenceAcceleration) => told.copy_from_slice(&self.output.dz),
+            Some(Derived::Acceleration) => transmitted.copy_from_slice(&dx[l.dq..l.reference]),
+            Some(Derived::ReferenceAcceleration) => transmitted.copy_from_slice(&self.output.dz),
             _ => {}
         }
     }
 
-    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, told: [&[f64]; 2], e: &mut [f64]) {
-        let checked = argument(&self.reference, self.layout, x, inputs, told, e);
+    fn argument(&mut self, x: &[f64], inputs: Inputs<'_>, transmitted: [&[f64]; 2], e: &mut [f64]) {
+        let checked = argument(&self.reference, self.layout, x, inputs, transmitted, e);
         debug_assert_eq!(checked, Ok(()), "lengths are fixed when the population is built");
     }
 
@@ -355,7 +355,7 @@ impl Columns for Population {
 
     fn signals(&self) -> Vec<(Signal, usize)> {
         let (l, reference) = (self.layout, &self.reference);
-        let told = reference.told();
+        let transmitted = reference.transmitted();
         let mut signals = Vec::new();
         let mut axes = |signal, count| signals.extend((0..count).map(|axis| (signal, axis)));
         axes(Signal::Position, l.m);
@@ -363,8 +363,8 @@ impl Columns for Population {
         for r in 0..reference.derivatives().max(2) {
             axes(Signal::Reference(r as u8), l.m);
         }
-        if told.held.is_some() {
-            told.signals.iter().for_each(|held| axes(*held, l.m));
+        if transmitted.held.is_some() {
+            transmitted.signals.iter().for_each(|held| axes(*held, l.m));
         }
         if self.reference.sliding().is_some() {
             axes(Signal::Selection, l.m);
@@ -399,8 +399,8 @@ impl Columns for Population {
             (Signal::Selection, column(l.theta_hat - l.block()))
         } else if state >= l.reference {
             let (block, axis) = (column(l.reference) / l.m, column(l.reference) % l.m);
-            let told = self.reference.told();
-            let held = told.held.and_then(|held| told.signals.get(block.checked_sub(held)?));
+            let transmitted = self.reference.transmitted();
+            let held = transmitted.held.and_then(|held| transmitted.signals.get(block.checked_sub(held)?));
             (held.copied().unwrap_or(Signal::Reference(block as u8)), axis)
         } else if state >= l.dq {
             (Signal::Velocity, column(l.dq))

@@ -75,7 +75,7 @@ struct Given {
 impl Tried {
     fn new(reference: Dynamics, draws: &mut Draws) -> Self {
         let mut numbers = |length: usize| (0..length).map(|_| 2.0 * draws.unit()).collect::<Vec<f64>>();
-        let (vectors, channels) = (reference.vectors(), reference.told().channels());
+        let (vectors, channels) = (reference.vectors(), reference.transmitted().channels());
         let states = AXES * vectors;
         let (q, dq, sums) = (numbers(AXES), numbers(AXES), numbers(AXES * channels));
         let (state, other) = (numbers(states), numbers(states));
@@ -178,8 +178,8 @@ impl Tried {
         };
         let heard = |r: usize, axis: usize| sums.get(r * AXES + axis).copied().unwrap_or(1.0);
         let form = |axis: usize| {
-            let told = linear.heard[0] * heard(0, axis) + linear.heard[1] * heard(1, axis);
-            sum(&linear.own, axis) + self.degree[0] * sum(&linear.coupled, axis) - told
+            let received = linear.heard[0] * heard(0, axis) + linear.heard[1] * heard(1, axis);
+            sum(&linear.own, axis) + self.degree[0] * sum(&linear.coupled, axis) - received
         };
         Ok((0..AXES).map(|axis| (Identity::LinearForm, form(axis), value[axis])).collect())
     }

@@ -11,7 +11,7 @@ use forwardstep_core::signal::Block as Signals;
 use super::assemble::Block;
 use super::frictions::is_acted_on;
 use crate::engine::{EventOutcome, Port};
-use crate::push::{Between, Course, Effect, Grip, Push};
+use crate::push::{AttachmentPoint, Between, Course, Effect, Push};
 use crate::setup::{AgentSetup, Setup};
 use crate::system::Attachments;
 
@@ -180,29 +180,29 @@ fn act(
                 *torque += at(course, k);
             }
         }
-        Effect::HandOnAxes { axes, stiffness, damping, target } => {
+        Effect::SpringOnAxes { axes, stiffness, damping, target } => {
             for (k, axis) in axes.iter().enumerate() {
                 torque[*axis] += stiffness[k] * (at(target, k) - q[*axis]) - damping[k] * dq[*axis];
             }
         }
-        Effect::Wrench { grip: Grip::Tip(tip), wrench } => {
+        Effect::Wrench { at: AttachmentPoint::Tip(tip), wrench } => {
             let [shoulder, elbow] = tip.torques([q[0], q[1]], [at(wrench, 0), at(wrench, 1)], at(wrench, 2));
             torque[0] += shoulder;
             torque[1] += elbow;
         }
-        Effect::HandOnPoint { grip: Grip::Tip(tip), stiffness, damping, target } => {
+        Effect::SpringOnPoint { at: AttachmentPoint::Tip(tip), stiffness, damping, target } => {
             let (x, dx) = tip.motion([q[0], q[1]], [dq[0], dq[1]]);
             let pull = [0, 1].map(|k| stiffness * (at(target, k) - x[k]) - damping * dx[k]);
             let [shoulder, elbow] = tip.torques([q[0], q[1]], pull, 0.0);
             torque[0] += shoulder;
             torque[1] += elbow;
         }
-        Effect::Wrench { grip: Grip::Link { point, axes }, wrench } => {
+        Effect::Wrench { at: AttachmentPoint::Link { point, axes }, wrench } => {
             let Some((tree, scratch)) = tree else { return Ok(()) };
             let [force, moment] = [0, 3].map(|first| [0, 1, 2].map(|k| at(wrench, first + k)));
             tree.add_wrench(scratch, q, point, &PointWrench { force, moment, axes: *axes }, torque)?;
         }
-        Effect::HandOnPoint { grip: Grip::Link { point, .. }, stiffness, damping, target } => {
+        Effect::SpringOnPoint { at: AttachmentPoint::Link { point, .. }, stiffness, damping, target } => {
             let Some((tree, scratch)) = tree else { return Ok(()) };
             let moves = tree.point_motion(scratch, q, dq, point)?;
             let force =

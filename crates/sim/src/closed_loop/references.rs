@@ -15,25 +15,25 @@ use crate::setup::{self, Setup};
 
 /// What agents tell each other.
 #[derive(Clone, Copy)]
-pub(super) struct Told {
+pub(super) struct Transmission {
     /// What a message holds, vectors with an entry per axis.
     pub(super) signals: &'static [Signal],
     /// The block of the reference state where a message begins; nothing where it is measured.
     pub(super) held: Option<usize>,
 }
 
-impl Told {
-    fn by<X: Exchange>() -> Told {
-        Told { signals: X::SIGNALS, held: X::HELD }
+impl Transmission {
+    fn by<X: Exchange>() -> Transmission {
+        Transmission { signals: X::SIGNALS, held: X::HELD }
     }
 
     /// Of what a setup says.
-    pub(super) fn of(exchange: setup::Exchange) -> Told {
+    pub(super) fn of(exchange: setup::Exchange) -> Transmission {
         match exchange {
-            setup::Exchange::Position => Told::by::<Position>(),
-            setup::Exchange::PositionVelocity => Told::by::<PositionVelocity>(),
-            setup::Exchange::Estimates => Told::by::<Estimates>(),
-            setup::Exchange::Composite => Told::by::<Composite>(),
+            setup::Exchange::Position => Transmission::by::<Position>(),
+            setup::Exchange::PositionVelocity => Transmission::by::<PositionVelocity>(),
+            setup::Exchange::Estimates => Transmission::by::<Estimates>(),
+            setup::Exchange::Composite => Transmission::by::<Composite>(),
         }
     }
 
@@ -57,8 +57,8 @@ macro_rules! any {
 
 /// What [`Reference`] says and does, whatever the agents exchange.
 impl Dynamics {
-    pub(super) fn told(&self) -> Told {
-        Told::of(self.exchange())
+    pub(super) fn transmitted(&self) -> Transmission {
+        Transmission::of(self.exchange())
     }
 
     pub(super) fn vectors(&self) -> usize {

@@ -124,7 +124,7 @@ struct Passed {
     /// The state at its end.
     state: Vec<f64>,
     /// What was told at its beginning.
-    told: Vec<f64>,
+    transmitted: Vec<f64>,
 }
 
 impl Period<'_> {
@@ -137,8 +137,8 @@ impl Period<'_> {
         self.columns.start(&self.setup.agents, &mut x, &degree, &none).map_err(error)?;
         x.extend(self.filtered.iter().map(|k| x[*k]).collect::<Vec<_>>());
         // All agree with the agent as it starts.
-        let Passed { told, .. } = self.pass(&x, false)?;
-        let agreed: Vec<f64> = told.iter().map(|entry| self.degree * entry).collect();
+        let Passed { transmitted, .. } = self.pass(&x, false)?;
+        let agreed: Vec<f64> = transmitted.iter().map(|entry| self.degree * entry).collect();
         self.heard = [agreed.clone(), agreed];
         let is_late = self.control.computation_delay_s > 0.0;
         if is_late {
@@ -150,7 +150,7 @@ impl Period<'_> {
             x = self.passes(&x, is_late, after)?.state;
             self.begin_s += f64::from(after) / self.control.sample_hz;
         }
-        let (n, m) = (x.len(), told.len());
+        let (n, m) = (x.len(), transmitted.len());
         let [mut own, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];
         let mut hears = [vec![0.0; n * m], vec![0.0; n * m]];
         for column in 0..n {
@@ -165,7 +165,7 @@ impl Period<'_> {
             for (row, pair) in above.state.iter().zip(&below.state).enumerate() {
                 own[row * n + column] = slope(pair);
             }
-            for (row, pair) in above.told.iter().zip(&below.told).enumerate() {
+            for (row, pair) in above.transmitted.iter().zip(&below.transmitted).enumerate() {
                 tells[row * n + column] = slope(pair);
             }
         }
@@ -240,8 +240,8 @@ impl Period<'_> {
         let agent = &self.setup.agents[0].name;
         let controllers: Result<Vec<_>, _> = recipes.iter().map(|(_, recipe)| built(recipe, agent)).collect();
         self.columns.sample(&self.control, controllers?);
-        let mut told = self.heard[0].clone();
-        self.take(self.begin_s, &mut x, &filter, 0, &mut told);
+        let mut transmitted = self.heard[0].clone();
+        self.take(self.begin_s, &mut x, &filter, 0, &mut transmitted);
         let mut command = Vec::new();
         self.columns.taken(&mut |digital| command.extend_from_slice(digital.taken(0, 0.0).command));
         let begun = self.positions(&x);
@@ -257,13 +257,13 @@ impl Period<'_> {
                 *f += quick * ((end - begin) / period_s - *f);
             }
         }
-        let mut ignored = told.clone();
+        let mut ignored = transmitted.clone();
         self.take(self.begin_s + period_s, &mut x, &filter, 1, &mut ignored);
         x.extend(filter);
         if self.control.computation_delay_s > 0.0 {
             x.extend(command);
         }
-        Ok(Passed { state: x, told })
+        Ok(Passed { state: x, transmitted })
     }
 
     /// Those whose velocities are filtered.
@@ -272,11 +272,11 @@ impl Period<'_> {
         all.take(self.filtered.len()).map(|k| x[k]).collect()
     }
 
-    /// A sample; `told` is what it tells.
-    fn take(&mut self, now_s: f64, x: &mut [f64], filter: &[f64], when: usize, told: &mut [f64]) {
+    /// A sample; `transmitted` is what it transmits.
+    fn take(&mut self, now_s: f64, x: &mut [f64], filter: &[f64], when: usize, transmitted: &mut [f64]) {
         let mut seen = x.to_vec();
         self.filtered.iter().zip(filter).for_each(|(k, f)| seen[*k] = *f);
-        self.columns.sense(now_s, &seen, told);
+        self.columns.sense(now_s, &seen, transmitted);
         let degree = [self.degree];
         let inputs = Inputs { degree: &degree, sums: &self.heard[when], external: None };
         self.columns.command(now_s, inputs, x);

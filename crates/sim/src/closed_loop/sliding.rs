@@ -160,7 +160,7 @@ impl<'a> Slider<'a> {
             return EventOutcome::Nothing;
         }
         self.set += 1;
-        if self.sliding.told() > 0 {
+        if self.sliding.transmitted() > 0 {
             for block in blocks.iter_mut() {
                 let (inputs, rates) = (block.inputs(heard, external), &mut self.rates[block.state.clone()]);
                 block.columns.rates(now_s, &x[block.state.clone()], inputs, rates);
@@ -194,7 +194,7 @@ impl<'a> Slider<'a> {
         dx: &mut [f64],
     ) {
         // A sign taken of what is heard alone was dealt with before the torque.
-        let Some(width) = self.is_layer().filter(|_| self.sliding.told() > 0) else { return };
+        let Some(width) = self.is_layer().filter(|_| self.sliding.transmitted() > 0) else { return };
         self.weigh(t_s);
         self.take_arguments(t_s, outside, blocks, x, Some(dx));
         for (selection, e) in self.selection.iter_mut().zip(&self.e) {
@@ -208,7 +208,7 @@ impl<'a> Slider<'a> {
 
     /// Has the signs ready to be recorded where they are functions of the instant and of what was computed.
     pub(super) fn look(&mut self, t_s: f64, heard: &Heard, external: Option<&[f64]>, blocks: &mut [Block], x: &[f64]) {
-        if self.is_layer().is_none() || self.sliding.told() == 0 {
+        if self.is_layer().is_none() || self.sliding.transmitted() == 0 {
             return;
         }
         let mut rates = std::mem::take(&mut self.rates);
@@ -236,11 +236,11 @@ impl<'a> Slider<'a> {
         x: &[f64],
         dx: Option<&[f64]>,
     ) {
-        if self.sliding.told() > 0 {
+        if self.sliding.transmitted() > 0 {
             let rates = dx.unwrap_or(&self.rates);
             for block in blocks.iter_mut() {
                 let range = block.columns_range(self.axes);
-                block.columns.tell(t_s, &rates[block.state.clone()], &mut self.own[range]);
+                block.columns.transmit(t_s, &rates[block.state.clone()], &mut self.own[range]);
             }
             self.sums.fill(0.0);
             for Link { from, to, now, .. } in &self.links {
@@ -269,9 +269,9 @@ impl<'a> Slider<'a> {
                 for c in 0..self.axes {
                     let at = to.first + c * to.stride;
                     let near = receiver.iter().filter(|link| !link.delayed);
-                    let told: f64 =
+                    let received: f64 =
                         near.map(|link| link.now * self.selection[link.from.first + c * link.from.stride]).sum();
-                    let value = saturated(self.e[at] + step * told, width);
+                    let value = saturated(self.e[at] + step * received, width);
                     let moved = (value - self.selection[at]).abs();
                     change = change.max(moved);
                     rest = rest.max(width * moved);
@@ -318,12 +318,12 @@ mod tests {
             slider.solve(&degree);
             let selection = &slider.selection;
             for i in 0..3 {
-                let told: f64 = edges
+                let received: f64 = edges
                     .iter()
                     .filter(|edge| edge.to == i)
                     .map(|edge| edge.weight.constant().unwrap() * selection[edge.from])
                     .sum();
-                let r = e[i] - 3e-3 * (degree[i] * selection[i] - told);
+                let r = e[i] - 3e-3 * (degree[i] * selection[i] - received);
                 let holds = if selection[i].abs() < 1.0 { r.abs() < 1e-15 } else { r * selection[i] >= -1e-15 };
                 assert!(holds && selection[i].abs() <= 1.0, "{e:?}: {selection:?} {r}");
             }

@@ -65,7 +65,7 @@ fn same_space(setup: &Setup) -> Result<(), SetupError> {
 /// The numbers in a message. What is computed is sent by sampled controllers; in continuous time it is looked up.
 pub(super) fn message_len(setup: &Setup) -> usize {
     let axes = setup.agents.first().map_or(0, |agent| agent.robot.axes.len());
-    let computed = if setup.control.is_some() { setup.following().map_or(0, |f| f.sliding().told()) } else { 0 };
+    let computed = if setup.control.is_some() { setup.following().map_or(0, |f| f.sliding().transmitted()) } else { 0 };
     (setup.exchange.words().len() + computed) * axes
 }
 

@@ -222,7 +222,12 @@ impl Path {
                 let found = formula.combination_for_ever(weights);
                 (found.within.is_finite() || found.is_unbounded()).then(|| found.within.is_finite())
             }
-            Path::Sinusoids { .. } | Path::Spline(_) => Some(true),
+            Path::Sinusoids { .. } => Some(true),
+            // Where it joins rest the third derivative jumps.
+            Path::Spline(spline) => {
+                let beyond = weights.iter().skip(Spline::JUMPS + 1).any(|weight| *weight != 0.0);
+                (!beyond || spline.rests()).then_some(true)
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use forwardstep_core::expression::{Expression, Interval};
 
-use super::{Path, Trajectory};
+use super::{Path, ROUNDING, Trajectory};
 use crate::formula::{Witness, times_s};
 
 /// Looks at a run.
@@ -86,6 +86,30 @@ impl Trajectory {
             }
             Some(self.norm_around(self.least_between(left, right), right - left)).filter(LeastNorm::vanishes)
         })
+    }
+
+    /// What the norm of all axes together never falls below where they are u sin ωt + v cos ωt with one ω, as a quaternion that turns about an
+    /// axis is: |q|² = (|u|² + |v|²)/2 + (|v|² − |u|²)/2 cos 2ωt + uᵀv sin 2ωt. `None` where they are not, or where that may come to zero.
+    pub fn least_turning_norm(&self) -> Option<f64> {
+        let (mut rate, mut size) = (None, 0.0);
+        let [mut uu, mut vv, mut uv] = [0.0; 3];
+        for path in &self.paths {
+            let Path::Sinusoids { offset: 0.0, waves } = path else { return None };
+            let [mut u, mut v] = [0.0; 2];
+            for wave in waves {
+                if *rate.get_or_insert(wave.rad_per_s) != wave.rad_per_s {
+                    return None;
+                }
+                u += wave.amplitude * libm::cos(wave.phase_rad);
+                v += wave.amplitude * libm::sin(wave.phase_rad);
+                size += wave.amplitude.abs();
+            }
+            uu += u * u;
+            vv += v * v;
+            uv += u * v;
+        }
+        let least = 0.5 * (uu + vv) - libm::hypot(0.5 * (vv - uu), uv) - ROUNDING * size * size;
+        (least > 0.0).then(|| libm::sqrt(least))
     }
 
     /// The square of the distance of the first axes from a point, as a formula in t; `None` where one of them is a curve through points.

@@ -77,6 +77,9 @@ impl Spline {
     /// How many derivatives it has: the fourth has corners at the points, where the fifth jumps.
     pub const DERIVATIVES: usize = 4;
 
+    /// The derivative that jumps at the first and the last point, where it joins rest; beyond it none is bounded there.
+    pub const JUMPS: usize = 3;
+
     /// The curve through (`t_s`, `values`).
     ///
     /// # Errors
@@ -118,6 +121,11 @@ impl Spline {
     /// The first and the last time, s.
     pub fn ends_s(&self) -> [f64; 2] {
         [self.t_s.first(), self.t_s.last()].map(|end| end.copied().unwrap_or(0.0))
+    }
+
+    /// Whether it never leaves its first point.
+    pub fn rests(&self) -> bool {
+        self.pieces.iter().all(|piece| piece[1..].iter().all(|coefficient| *coefficient == 0.0))
     }
 
     /// The times of the points, s.

@@ -114,6 +114,13 @@ fn splines_go_through_their_points_and_have_four_continuous_derivatives() {
             );
         }
     }
+    // The third derivative jumps at the ends, where the fourth has no bound; where nothing moves it has.
+    let unit = |k: usize| (0..=k).map(|j| f64::from(j == k)).collect::<Vec<_>>();
+    let bounded = |spline: &Spline, k| Path::Spline(spline.clone()).is_bounded(&unit(k));
+    assert!(spline.jet(0.5 + 1e-9)[3].abs() > 1.0 && (0..4).all(|k| bounded(&spline, k) == Some(true)));
+    assert_eq!(bounded(&spline, 4), None);
+    let still = Spline::new(vec![0.0, 1.0, 2.0], vec![3.0; 3]).unwrap();
+    assert_eq!([3, 4].map(|k| bounded(&still, k)), [Some(true); 2]);
     // At rest at the ends, and beyond.
     for (inside, outside) in [(0.5 + 1e-9, 0.4), (4.2 - 1e-9, 9.0)] {
         assert!(spline.jet(inside)[1].abs() < 1e-4 && spline.jet(inside)[2].abs() < 1e-4);
@@ -261,4 +268,32 @@ fn a_distance_that_leaves_its_range_after_the_run_has_a_time_with_six_decimals()
     assert!(found.t_s > 109.4 && found.t_s < 112.0 && found.value > 3.24, "{found:?}");
     assert_eq!((found.t_s * 1e6).round() / 1e6, found.t_s);
     assert_eq!(trajectory.leaves_later(&[0.0, 0.0], Interval { low: 0.0, high: 3.62 }, 20.0), None);
+}
+
+/// Turning about an axis keeps the norm of a quaternion; of other ellipses the half of the shorter axis is left.
+#[test]
+fn own_the_norm_of_what_turns_is_known_for_ever() {
+    let wave = |amplitude, phase_rad| Sinusoid { amplitude, rad_per_s: 0.7, phase_rad };
+    let turning = |waves: &[[Sinusoid; 2]]| {
+        let path = |waves: &[Sinusoid; 2]| Path::Sinusoids { offset: 0.0, waves: waves.to_vec() };
+        Trajectory::new(waves.iter().map(path).collect()).unwrap()
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    // u = (0, 0.6, 0.8, 0) and v = (0.8, 0, 0, 0.6), which are orthogonal.
+    let attitude =
+        turning(&[[0.0, 0.8], [0.6, 0.0], [0.8, 0.0], [0.0, 0.6]].map(|[u, v]| [wave(u, 0.0), wave(v, quarter)]));
+    assert!((attitude.least_turning_norm().unwrap() - 1.0).abs() < 1e-11);
+    // Neither orthogonal nor alike: by its values over a period.
+    let oblique = turning(&[[1.0, 0.7], [0.3, 1.1], [0.2, 0.0]].map(|[u, v]| [wave(u, 0.4), wave(v, 1.7)]));
+    let period_s = std::f64::consts::TAU / 0.7;
+    let norm = |t_s: f64| oblique.paths().iter().map(|path| path.jet(t_s)[0].powi(2)).sum::<f64>().sqrt();
+    let seen = (0..100_000).map(|k| norm(period_s * f64::from(k) * 1e-5)).fold(f64::INFINITY, f64::min);
+    let least = oblique.least_turning_norm().unwrap();
+    assert!(least <= seen && seen - least < 1e-6, "{least} {seen}");
+    // Through zero, with another rate, and beside a constant.
+    assert_eq!(turning(&[[wave(1.0, 0.0), wave(0.5, 0.0)]]).least_turning_norm(), None);
+    let other = Sinusoid { rad_per_s: 0.8, ..wave(1.0, quarter) };
+    assert_eq!(turning(&[[wave(1.0, 0.0), other], [wave(1.0, quarter), wave(0.0, 0.0)]]).least_turning_norm(), None);
+    let still = Path::Sinusoids { offset: 1.0, waves: vec![wave(0.5, 0.0)] };
+    assert_eq!(Trajectory::new(vec![still]).unwrap().least_turning_norm(), None);
 }

@@ -47,6 +47,8 @@ pub enum Bounded {
     ForEver,
     /// Neither this nor its contrary is shown.
     NotShown,
+    /// A curve through points joins rest by a third derivative that jumps, so that the fourth has no bound there.
+    Jumps,
     /// A derivative exceeds every bound.
     Unbounded {
         /// Which; zero for the motion itself.
@@ -62,7 +64,9 @@ impl MotionEvidence {
             MotionEvidence::Derivatives(Bounded::ForEver)
             | MotionEvidence::EntryAway { .. }
             | MotionEvidence::NormAbove { .. } => Answer::Holds,
-            MotionEvidence::Derivatives(Bounded::NotShown) | MotionEvidence::NormSeen { .. } => Answer::NotShown,
+            MotionEvidence::Derivatives(Bounded::NotShown | Bounded::Jumps) | MotionEvidence::NormSeen { .. } => {
+                Answer::NotShown
+            }
             MotionEvidence::OfAgent => Answer::Watched,
             MotionEvidence::Derivatives(Bounded::Unbounded { .. })
             | MotionEvidence::NormFades { .. }

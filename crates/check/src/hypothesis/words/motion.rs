@@ -11,6 +11,10 @@ pub(super) fn words(evidence: &MotionEvidence) -> String {
         MotionEvidence::Derivatives(bounded) => match bounded {
             Bounded::ForEver => "they are bounded for all time".into(),
             Bounded::NotShown => "they could not be shown to be bounded for all time".into(),
+            Bounded::Jumps => {
+                "where a curve through points starts and ends its third derivative jumps, so that the fourth has no bound"
+                    .into()
+            }
             Bounded::Unbounded { derivative, witness } => unbounded(*derivative, *witness),
         },
         MotionEvidence::OfAgent => "it is an agent, which moves as its own law and its target make it".into(),

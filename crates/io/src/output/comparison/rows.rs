@@ -239,11 +239,11 @@ fn verdict(s: &Subject<'_>) -> Result<Cell, Cell> {
     let worst = report.worst();
     let names = report.hypotheses.iter().filter(|hypothesis| hypothesis.answer() == worst);
     let names: Vec<&str> = names.map(|hypothesis| hypothesis.id.name()).collect();
-    Ok(if worst == Answer::Holds {
-        Cell::words(worst.words())
-    } else {
-        Cell::words(format!("{}: {}", worst.words(), names.join(", ")))
-    })
+    let words = match worst {
+        Answer::Holds => worst.words().to_owned(),
+        _ => format!("{}: {}", worst.words(), names.join(", ")),
+    };
+    Ok(Cell::words([vec![words], s.run.record.failures()].concat().join("; ")))
 }
 
 fn ended(s: &Subject<'_>) -> Result<Cell, Cell> {

@@ -136,11 +136,10 @@ pub(super) fn network(setup: &Setup) -> String {
     graphs + &late
 }
 
-/// The orders of the reference dynamics.
+/// The least and the greatest order of the reference dynamics of those agents that have roots.
 pub(super) fn orders(setup: &Setup) -> Option<(usize, usize)> {
-    let orders = || setup.agents.iter().map(|agent| agent.roots_per_s.len());
-    let (least, most) = (orders().min()?, orders().max()?);
-    (most > 0).then_some((least, most))
+    let orders = || setup.agents.iter().map(|agent| agent.roots_per_s.len()).filter(|order| *order > 0);
+    Some((orders().min()?, orders().max()?))
 }
 
 /// How the controllers work.

@@ -116,6 +116,7 @@ pub(crate) fn promised(record: &RunRecord<'_>) -> Markup {
                 @if k > 0 { ", " }
                 span.(class) { (sign) " " (answer.words()) ": " (count) }
             }
+            @for failure in record.failures() { "; " span.bad { (failure) } }
         }
     }
 }

@@ -9,6 +9,7 @@ mod families;
 mod header;
 mod injected;
 mod interfaces;
+mod loads;
 mod network;
 mod practical;
 mod predicted;
@@ -121,7 +122,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (explanation_markup(record.setup, &explained, &Footing::of(record.setup, record.verdicts)))
                     (sections::digital(record))
                     (injected::injected(record))
-                    (sections::loads(record.setup, metrics))
+                    (loads::loads(record.setup, metrics))
                     (sections::provenance(record))
                     footer {
                         @for note in &payload.notes { p { (text::prose(note)) } }

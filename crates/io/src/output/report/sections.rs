@@ -2,23 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use forwardstep_check::{Answer, Hypothesis, Id, Report, Rigour};
+use forwardstep_check::{Answer, Hypothesis, Report, Rigour};
 use forwardstep_core::reference::Choice;
 use forwardstep_sim::leader::Following;
-use forwardstep_sim::recording::{BreakdownCause, Drive, Ending, Outcome, Signal};
+use forwardstep_sim::recording::{Drive, Ending, Signal};
 use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::ending::ending_sentence;
-use super::super::metrics::{Disagreement, Gap, LimitKind, LimitReached, Metrics, coarse_rows};
+use super::super::metrics::{Disagreement, Gap, Metrics, coarse_rows};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
 use super::super::text::{self, number, prose};
-
-/// More rows would only repeat themselves.
-const MOST_LIMIT_ROWS: usize = 24;
-const MOST_TORQUE_ROWS: usize = 64;
 
 /// What the residual of the balance is.
 pub(super) const BALANCE_WORDS: &str = "The proof rests on an identity: V loses what the law dissipates, dV/dt = −sᵀKs for most laws. The \
@@ -68,7 +64,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                                     p.because {
                                         (prose(&hypothesis.because()))
                                         @if hypothesis.answer() == Answer::Watched {
-                                            @if let Some(failed) = failed(record, hypothesis.id) { "; " strong.bad { (failed) } }
+                                            @if let Some(failed) = record.failed(hypothesis) { "; " strong.bad { "in this run " (failed) } }
                                             @else if record.outcome.ending == Ending::Completed { "; this run reached its horizon" }
                                         }
                                     }
@@ -108,23 +104,6 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                 }
             }
         }
-    }
-}
-
-/// That what is watched during the run failed in it, and when.
-pub(super) fn failed(record: &RunRecord<'_>, id: Id) -> Option<String> {
-    let Outcome { ending, statistics, .. } = record.outcome;
-    match (id, ending) {
-        (Id::RegularJacobian | Id::NonzeroThrust | Id::InputFactor, Ending::BrokeDown(breakdown))
-            if matches!(breakdown.cause, BreakdownCause::Vanished { .. }) =>
-        {
-            Some(format!("in this run it failed, at t = {} s", number(breakdown.t_s)))
-        }
-        (Id::SignGain, _) => {
-            let until_s = statistics.drive?.exceeds_until_s?;
-            Some(format!("in this run γ was too small until t = {} s, and large enough from then on", number(until_s)))
-        }
-        _ => None,
     }
 }
 
@@ -272,91 +251,6 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
                 @if let Some(t_s) = cost.twin_ended_at_s {
                     p.note { "In continuous time the run ended at t = " (number(t_s)) " s." }
                 }
-            }
-        }
-    }
-}
-
-/// Peak torques, agents by axes, and the limits that were reached.
-pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
-    let most_axes = metrics.peak_torques.iter().map(|peak| peak.axis + 1).max().unwrap_or(0);
-    let peak = |agent, axis| metrics.peak_torques.iter().find(|p| p.agent == agent && p.axis == axis);
-    html! {
-        section #loads {
-            h2 { "Loads and limits" }
-            @if metrics.peak_torques.is_empty() { p.note { "No torques or forces were recorded." } } @else {
-                div.card.scroll {
-                    h3 { "Peak " (names::input_words(setup).0) " " span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
-                    table.numbers.peaks {
-                        thead { tr { th {} @for axis in 0..most_axes { th { (names::shared_words(setup, axis, names::torque_words)) } } } }
-                        tbody {
-                            @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
-                                tr {
-                                    th { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
-                                    @for axis in 0..most_axes {
-                                        td { @if let Some(p) = peak(agent, axis) { (torque(setup, p.agent, p.axis, p.value, p.t_s)) } }
-                                    }
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-            div.card.scroll #limits {
-                h3 { "Limits" " " span.by { "reported; enforced only where the scenario asks for it" } }
-                @if metrics.limits_reached.is_empty() { p.note { "No known limit was exceeded." } } @else {
-                    table.numbers {
-                        thead { tr { th { "Joint" } th { "limit" } th { "value" } th { "worst" } th { "exceeded by" } th { "first at" } th { "of the rows" } th { "enforced" } } }
-                        tbody { @for limit in metrics.limits_reached.iter().take(MOST_LIMIT_ROWS) {
-                            @let (kind, signal) = match limit.kind {
-                                LimitKind::Position | LimitKind::Unknown => ("position".to_owned(), Signal::Position),
-                                LimitKind::Velocity => ("speed".to_owned(), Signal::Velocity),
-                                LimitKind::Effort => {
-                                    (if names::unit(setup, limit.agent, Signal::Torque, limit.axis) == "N" { "force" } else { "torque" }.to_owned(), Signal::Torque)
-                                }
-                                LimitKind::Rotor => ("thrust".to_owned(), Signal::Thrust),
-                                LimitKind::Signal(signal) => (signal.name().replace('_', " "), signal),
-                            };
-                            @let unit = unit_at(setup, signal, limit.agent, limit.axis);
-                            tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (limit_entry(setup, limit, signal)) }
-                                td { (kind) }
-                                td { (number(limit.limit)) " " (unit) }
-                                td { (number(limit.worst)) " " (unit) }
-                                td { @if limit.excess > 0.0 { (number(limit.excess)) } @else { "reached" } }
-                                td { (number(limit.first_t_s)) " s" }
-                                td { (number((1000.0 * limit.share).ceil() / 10.0)) " %" }
-                                td { @if limit.enforced { "yes" } @else { "no" } }
-                            }
-                        } }
-                    }
-                    @if metrics.limits_reached.len() > MOST_LIMIT_ROWS {
-                        p.note { "The first " (MOST_LIMIT_ROWS) " of " (metrics.limits_reached.len()) "; summary.json has all." }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// What of an agent has the limit: an axis, an entry of a signal, or a rotor.
-fn limit_entry(setup: &Setup, limit: &LimitReached, signal: Signal) -> String {
-    match limit.kind {
-        LimitKind::Rotor => format!("rotor {}", limit.axis + 1),
-        _ => names::entry_words(setup, limit.agent, signal, limit.axis),
-    }
-}
-
-fn torque(setup: &Setup, agent: usize, axis: usize, value: f64, t_s: f64) -> Markup {
-    let limit = setup.agents[agent].robot.axes[axis].effort_limit;
-    html! {
-        span.value { (number(value.abs())) }
-        span.unit { " " (unit_at(setup, Signal::Torque, agent, axis)) }
-        small {
-            (number(t_s)) " s"
-            @if let Some(limit) = limit {
-                @let share = value.abs() / limit;
-                " · " span.bad[share > 1.0] { (number((100.0 * share).round())) " %" }
             }
         }
     }

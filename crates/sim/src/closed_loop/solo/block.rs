@@ -222,10 +222,10 @@ impl Columns for Solo {
     }
 
     /// q̈, of one that leads.
-    fn tell(&mut self, _: f64, dx: &[f64], told: &mut [f64]) {
+    fn transmit(&mut self, _: f64, dx: &[f64], transmitted: &mut [f64]) {
         let Layout { m, velocities, .. } = self.layout;
         if velocities == m {
-            told.copy_from_slice(&dx[m..2 * m]);
+            transmitted.copy_from_slice(&dx[m..2 * m]);
         }
     }
 

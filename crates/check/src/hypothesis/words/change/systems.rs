@@ -21,6 +21,7 @@ pub(super) fn motion(evidence: &MotionEvidence) -> Option<String> {
             "a motion of sines, of points, or of formulas that repeat or settle: they can be bounded for all time"
                 .into()
         }
+        MotionEvidence::Derivatives(Bounded::Jumps) => "a motion of sines or of formulas".into(),
         MotionEvidence::OfAgent => "a leader whose motion is given before the run".into(),
         MotionEvidence::NormSeen { .. } => {
             "an entry that keeps its sign, so that the norm has a bound for all time".into()

@@ -8,7 +8,7 @@ mod kinematics;
 use forwardstep_core::robot::tree::Tree;
 use forwardstep_sim::leader::Leading;
 use forwardstep_sim::network::Network;
-use forwardstep_sim::push::{Effect, Grip};
+use forwardstep_sim::push::{AttachmentPoint, Effect};
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Trajectory;
 use forwardstep_sim::{
@@ -273,9 +273,8 @@ fn arm(agent: &AgentSetup) -> Option<ArmScene> {
         }
         Attachments::PlanarTip => {
             let gripped = agent.pushes.iter().find_map(|push| match &push.effect {
-                Effect::Wrench { grip: Grip::Tip(tip), .. } | Effect::HandOnPoint { grip: Grip::Tip(tip), .. } => {
-                    Some(tip.length_m)
-                }
+                Effect::Wrench { at: AttachmentPoint::Tip(tip), .. }
+                | Effect::SpringOnPoint { at: AttachmentPoint::Tip(tip), .. } => Some(tip.length_m),
                 _ => None,
             });
             let length_m = match law.map(|law| &law.tip) {

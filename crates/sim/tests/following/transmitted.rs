@@ -135,10 +135,10 @@ fn own_one_vector_keeps_reference_accelerations_continuous_where_that_of_122_jum
     };
     let late =
         Delay::new(PiecewiseConstant { times_s: vec![0.0, 0.2], values_s: vec![0.15, 0.02], period_s: Some(0.45) });
-    let (told, late, of_122) =
+    let (transmitted, late, of_122) =
         (jumps(COMPOSITE, None), jumps(COMPOSITE, Some(late)), jumps(FollowingDesign::WithoutAcceleration, None));
     // γ = 2.5 and what is heard move ż by hundredths in a millisecond.
-    assert!(told < 0.03 && late < 0.03 && of_122 > 0.2, "{told} {late} {of_122}");
+    assert!(transmitted < 0.03 && late < 0.03 && of_122 > 0.2, "{transmitted} {late} {of_122}");
 }
 
 /// Arms on the move under samples come to continuous ones as samples come faster; with what each says at which sample.
