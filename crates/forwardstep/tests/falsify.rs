@@ -197,6 +197,12 @@ fn regress_a_place_that_takes_no_file_is_refused_before_the_search() {
         let said = stderr(&forwardstep(&folder, &["falsify", "--cases", "1", "--out", out]).code(2));
         assert!(said.contains("`file` is no folder"), "{said}");
     }
+    // Nobody writes there, whoever runs this.
+    #[cfg(target_os = "linux")]
+    for out in ["/proc/self/fdinfo", "/proc/self/fdinfo/below"] {
+        let said = stderr(&forwardstep(&folder, &["falsify", "--cases", "1", "--out", out]).code(2));
+        assert!(said.contains("cannot be written to: ") && said.contains("name another folder"), "{said}");
+    }
     // What is not needed is not made.
     forwardstep(&folder, &["falsify", "--cases", "1", "--out", "made/too"]).code(0);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);

@@ -132,6 +132,14 @@ fn manipulability_says_in_words_what_a_push_does_and_why_it_cannot() {
         "{said}"
     );
     assert!(said.contains("theory      0.02604 /s, measured 0.02604 /s"), "{said}");
+    assert!(!said.contains("let `--torque`"), "{said}");
+    // What is no longer the small push that the theory is of is said to be too large, or too small for numbers.
+    for (torque, why) in
+        [("1e-15", "lost in rounding: let `--torque` be larger"), ("1e4", "let `--torque` be smaller, or")]
+    {
+        let said = stdout(&forwardstep(&here, &["manipulability", "--lambda", "1", "--torque", torque]));
+        assert!(said.contains(why), "{said}");
+    }
     for (arguments, why) in [
         (&["six-arms"][..], "the graph switches"),
         (&["remark-4", "--on", "arm-9"], "no agent is called `arm-9`; there are arm-1, arm-2"),

@@ -73,6 +73,7 @@ pub(crate) fn manipulability(
                     break;
                 }
             };
+            let why = differs(theory, found, trial);
             let words = Words::of(*lambda, theory, found);
             if options.table {
                 let adapts = setup.agents[trial.agent].law.is::<Adaptive>();
@@ -85,10 +86,35 @@ pub(crate) fn manipulability(
                 console.line(format_args!("    an impulse of 1 displaces it by     {theory}, measured {measured}"));
                 let Response { theory, measured } = by_constant;
                 console.line(format_args!("    a constant torque of 1: theory      {theory}, measured {measured}"));
+                if let Some(why) = why {
+                    console.line(format_args!("{DIM}    {why}{DIM:#}"));
+                }
             }
         }
     }
     Ok(Status::Fine)
+}
+
+/// A part of the gain by which theory and measurement may differ without a word.
+const ALIKE: f64 = 0.01;
+/// Displacements below this, rad or m, are lost in what positions are rounded to and solved with.
+const LOST: f64 = 1e-10;
+
+/// Why what was measured is not what theory says, where it is not.
+fn differs(theory: LowFrequency, found: Measured, trial: Trial) -> Option<&'static str> {
+    let constant =
+        if theory.degree > 0 { found.drift - theory.by_impulse() } else { found.by_constant - theory.by_constant() };
+    let off = (found.by_impulse - theory.by_impulse()).abs().max(constant.abs());
+    let is_lost = (trial.torque * trial.for_s * theory.gain).abs() < LOST;
+    // Of what is no number nothing is alike.
+    let alike = off <= ALIKE * theory.gain.abs();
+    let is_told = !alike && (0..=1).contains(&theory.degree);
+    is_told.then_some(match is_lost {
+        true => "so small a push is lost in rounding: let `--torque` be larger",
+        false => {
+            "the theory is that of small pushes, long after they began: let `--torque` be smaller, or the run longer"
+        }
+    })
 }
 
 /// Why there is no transfer, with agents by name.

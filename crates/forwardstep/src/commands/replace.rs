@@ -34,16 +34,21 @@ pub(super) fn write_into(folder: &Path, name: &str, text: &str) -> Result<PathBu
     Ok(path)
 }
 
-/// Checks that no file stands in the way of this folder. Asked before work that may have nothing to write.
+/// Checks that this folder is there and can be written to, or can be made. Asked before work that may have nothing to write.
 pub(super) fn check_folder(path: &Path) -> Result<(), Plain<String>> {
-    let there = path.ancestors().find(|above| above.symlink_metadata().is_ok());
-    match there.filter(|there| !there.is_dir()) {
-        Some(there) => {
-            let said = format!("`{}` is no folder", shown(there));
-            Err(Plain::with_help(said, Some("name a folder, or one that is not there yet")))
-        }
-        None => Ok(()),
+    let from_here = Path::new(".").join(path);
+    let Some(there) = from_here.ancestors().find(|above| above.symlink_metadata().is_ok()) else { return Ok(()) };
+    let named = there.strip_prefix(".").ok().filter(|below| !below.as_os_str().is_empty()).unwrap_or(there);
+    if !there.is_dir() {
+        let said = format!("`{}` is no folder", shown(named));
+        return Err(Plain::with_help(said, Some("name a folder, or one that is not there yet")));
     }
+    // What a folder allows is known for certain by trying.
+    let probe = there.join(format!(".forwardstep-{}", std::process::id()));
+    File::create_new(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|error| {
+        let said = format!("`{}` cannot be written to: {error}", shown(named));
+        Plain::with_help(said, Some("name another folder"))
+    })
 }
 
 /// Checks that `path` can be written: nothing is there, or what `is_own` knows as written by this command before. Asked before the

@@ -286,6 +286,11 @@ fn regress_thrusts_rotors_and_wheels_have_peaks() {
         // Of rotors and wheels limits are known, so that their share is said.
         let (loads, _) = loads.split_once("</table>").unwrap();
         assert_eq!(loads.contains(" %</span>"), scenario != "thrust-continuous", "{loads}");
+        if scenario == "formation" {
+            // Four, and the largest of a rotor beside the 8 N that it has.
+            assert_eq!(loads.matches("<th><span class=\"dot").count(), 4, "{loads}");
+            assert!(loads.contains(">6.951</span>") && loads.contains(">87 %</span>"), "{loads}");
+        }
     }
 }
 
