@@ -1449,7 +1449,7 @@ def planar(body):
 # A share on either side of a parameter, or all from zero to twice a friction, holds it; bounds that are given have to.
 def bounds_of(agent): return agent.settings().get("estimate_bounds" if agent.law == "task_space" else "bounds")
 
-def bounds_hold(agent):
+def in_bounds(agent):
     kind, body = chosen(bounds_of(agent) or {"within": 1}, "bounds", ("within", "given"), "bounds")
     if kind == "within": return exact(body, "within") > 0
     plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
@@ -1528,18 +1528,18 @@ TEXT = {(each, "text"): so for each, so in {
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
     "shared-design": lambda s, _: s.reference == "leader", "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
     "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
-    "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: all(map(bounds_hold, s.agents)),
+    "known-momentum": lambda _, own: not any(a.pushes for a in own), "parameters-within-bounds": lambda s, _: all(map(in_bounds, s.agents)),
     "target-at-rest": lambda _, own: all(map(rests, own)), "lengths-within-bounds": lambda s, own: all(lengths_hold(s, a) for a in own),
     "applied-torque": lambda s, _: not s.limited(), "desired-design": lambda s, _: s.desired,
     "smooth-friction": lambda s, _: frictions(s) <= {"smooth"}, "mutual-weights": lambda s, _: all(map(s.mutual, s.graphs))}.items()} | {
     ("lengths-within-bounds", "outside"): lambda s, own: not all(lengths_hold(s, agent) for agent in own),
-    ("parameters-within-bounds", "outside"): lambda s, _: not all(map(bounds_hold, s.agents)), ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
+    ("parameters-within-bounds", "outside"): lambda s, _: not all(map(in_bounds, s.agents)),
     # Of (3) and (23) delays may jump with the phases.
     ("fixed-graph", "one-graph"): lambda s, _: s.fixed(delays=False) and not s.varying() if s.reference == "pure_integral" else s.fixed(),
     ("common-first-root", "constant"): lambda s, _: all_constant(s), ("constant-weights", "text"): lambda s, _: not s.varying(),
     ("input-factor", "factor-away"): lambda s, _: all(max(low, -high) >= floor for _, (low, high), floor in factors(s)),
     ("nonzero-thrust", "starts-below"): lambda s, _: any(starts_below(agent) for agent in s.agents if agent.law == "thrust"),
-    ("start-attitude", "half-turn"): lambda s, own: scalar_part(s, own)[1] <= 0,
+    ("start-attitude", "half-turn"): lambda s, own: scalar_part(s, own)[1] <= 0, ("dwell-time", "never-switches"): lambda s, _: s.fixed(),
     # Every entry comes to zero as t grows, and the norm with it.
     ("nonzero-quaternion", "fades"): lambda _, own: all(limit(tree) == (0, 0) for tree in quaternion(own))}
 

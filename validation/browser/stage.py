@@ -56,7 +56,8 @@ def film(browser, name, page):
     empty.write_text("<!DOCTYPE html><title>A film</title>")
     browser.open(empty)
     width, height, length, changed = waited(browser, PLAYED, taken)
-    expect((width, height) == (1280, 720) and 1.2 < length < 6 and changed > 1000, f"{name}: a film of {width} by {height}, {length} s, {changed} bytes change")
+    # A busy machine draws the first and the last of it late.
+    expect((width, height) == (1280, 720) and 0.7 < length < 6 and changed > 1000, f"{name}: a film of {width} by {height}, {length} s, {changed} bytes change")
 
 
 def flights(browser, name, page):
