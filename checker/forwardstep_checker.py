@@ -985,7 +985,7 @@ class Scenario:
                 such(meant, f"there is no agent `{name}`")
                 for agent in meant: agent.pushes += [each for each in acting if each[0] < each[1]]
 
-    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, and whether it is a hand.
+    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, and whether it is a spring.
     def courses(self, by):
         kind, body = choice(by, "by")
         keys = ("force_n", "torque_n_m") if kind == "wrench" else ("target", "target_rad", "target_m")

@@ -34,7 +34,7 @@ fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
         pushed: all,
         torques_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && is_lagrangian(agent)),
         others_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && !is_lagrangian(agent)),
-        hands_for_ever: pushed(|_, push| endless(push) && push.is_spring()),
+        springs_for_ever: pushed(|_, push| endless(push) && push.is_spring()),
         unbounded: pushed(|_, push| !endless(push) && !is_bounded(push)),
         last_end_s: pushes.map(ends_s).fold(0.0, f64::max),
     };

@@ -66,7 +66,7 @@ fn weights_swing(setup: &mut Setup) {
     }
 }
 
-/// Lets a hand lead the first agent along a table.
+/// Lets a virtual spring lead the first agent along a table.
 fn a_hand_leads(setup: &mut Setup) {
     let axes = setup.agents[0].robot.axes.len();
     let times_s: Vec<f64> = (0..200).map(|k| 0.05 * k as f64).collect();

@@ -41,7 +41,7 @@ pub struct Along {
 pub struct PowerReached {
     /// The mean, W.
     pub mean_w: f64,
-    /// The bound with the pushes, V and σ of the run itself; `None` where V was not recorded, and where a hand pushes a robot with dry
+    /// The bound with the pushes, V and σ of the run itself; `None` where V was not recorded, and where a spring pulls a robot with dry
     /// friction: the recording has the sum of both.
     pub bound: Option<PowerBound>,
 }

@@ -262,7 +262,6 @@ impl Metrics {
 }
 
 /// The largest |value| of a column with its sign, the first of equals; a value that is not a number wins.
-/// The first of the largest magnitudes of one column.
 pub(super) fn peak(table: &Table<'_>, agent: usize, axis: usize, values: &[f64]) -> Option<Peak> {
     let worse = |(_, best): (_, &f64), (_, next): (_, &f64)| next.abs() > best.abs() || next.is_nan() && !best.is_nan();
     let (t_s, value) = table.t_s.iter().zip(values).reduce(|best, next| if worse(best, next) { next } else { best })?;

@@ -72,7 +72,7 @@ impl RunRecord<'_> {
     }
 
     /// That a hypothesis that is watched during the run failed in it, and when, as a clause; `None` where it did not.
-    pub fn failed(&self, hypothesis: &Hypothesis) -> Option<String> {
+    pub(crate) fn failed(&self, hypothesis: &Hypothesis) -> Option<String> {
         if hypothesis.id == Id::SignGain {
             let until_s = self.outcome.statistics.drive?.exceeds_until_s?;
             return Some(format!("γ was too small until t = {} s, and large enough from then on", number(until_s)));

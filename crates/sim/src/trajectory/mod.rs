@@ -226,7 +226,7 @@ impl Path {
             // Where it joins rest the third derivative jumps.
             Path::Spline(spline) => {
                 let beyond = weights.iter().skip(Spline::JUMPS + 1).any(|weight| *weight != 0.0);
-                (!beyond || spline.rests()).then_some(true)
+                (!beyond || spline.is_still()).then_some(true)
             }
         }
     }

@@ -124,7 +124,7 @@ impl Spline {
     }
 
     /// Whether it never leaves its first point.
-    pub fn rests(&self) -> bool {
+    pub fn is_still(&self) -> bool {
         self.pieces.iter().all(|piece| piece[1..].iter().all(|coefficient| *coefficient == 0.0))
     }
 

@@ -20,8 +20,8 @@ pub enum LoopEvidence {
         torques_for_ever: Vec<Named>,
         /// Whom else something acts on for ever.
         others_for_ever: Vec<Named>,
-        /// Whom a hand never lets go.
-        hands_for_ever: Vec<Named>,
+        /// On whom a virtual spring acts for ever.
+        springs_for_ever: Vec<Named>,
         /// Whom something acts on that ends, and is not shown to have a bounded value until then.
         unbounded: Vec<Named>,
         /// When the last push ends, s; infinite where one does not.
@@ -79,8 +79,8 @@ impl LoopEvidence {
         let unless = |spoiled: bool| if spoiled { Answer::NotCovered } else { Answer::Holds };
         match self {
             LoopEvidence::Gains { .. } => Answer::Holds,
-            LoopEvidence::Pushes { torques_for_ever, others_for_ever, hands_for_ever, unbounded, .. } => {
-                match unless([torques_for_ever, others_for_ever, hands_for_ever].iter().any(|all| !all.is_empty())) {
+            LoopEvidence::Pushes { torques_for_ever, others_for_ever, springs_for_ever, unbounded, .. } => {
+                match unless([torques_for_ever, others_for_ever, springs_for_ever].iter().any(|all| !all.is_empty())) {
                     Answer::Holds if !unbounded.is_empty() => Answer::NotShown,
                     answer => answer,
                 }

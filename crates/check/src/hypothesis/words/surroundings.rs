@@ -14,8 +14,8 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
             };
             format!("checked exactly when the gains were read; {parameters}")
         }
-        LoopEvidence::Pushes { pushed, torques_for_ever, others_for_ever, hands_for_ever, unbounded, last_end_s } => {
-            pushes(pushed, [torques_for_ever, others_for_ever, hands_for_ever, unbounded], *last_end_s)
+        LoopEvidence::Pushes { pushed, torques_for_ever, others_for_ever, springs_for_ever, unbounded, last_end_s } => {
+            pushes(pushed, [torques_for_ever, others_for_ever, springs_for_ever, unbounded], *last_end_s)
         }
         LoopEvidence::Applied { limited, enforced } => {
             let mut reasons: Vec<String> = limited.iter().map(|limited| limit(*limited).to_owned()).collect();
@@ -50,7 +50,7 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
     }
 }
 
-fn pushes(pushed: &[Named], [torques, others, hands, unbounded]: [&[Named]; 4], last_end_s: f64) -> String {
+fn pushes(pushed: &[Named], [torques, others, springs, unbounded]: [&[Named]; 4], last_end_s: f64) -> String {
     let mut because = Vec::new();
     if !torques.is_empty() {
         because.push(format!(
@@ -62,11 +62,11 @@ fn pushes(pushed: &[Named], [torques, others, hands, unbounded]: [&[Named]; 4], 
     if !others.is_empty() {
         because.push(format!("{} pushed for ever: the tracking error does not vanish", is_or_are(others)));
     }
-    if !hands.is_empty() {
+    if !springs.is_empty() {
         because.push(format!(
             "a virtual spring never lets go of {}: while its target stands still it takes energy out of the motion, but the proof counts \
              the power of torques with s and not with dq",
-            names(hands)
+            names(springs)
         ));
     }
     if !unbounded.is_empty() {

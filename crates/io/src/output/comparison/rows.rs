@@ -214,7 +214,7 @@ fn same_start(a: &Subject<'_>, b: &Subject<'_>) -> bool {
 fn told(s: &Subject<'_>) -> Result<Cell, Cell> {
     match s.setup().transmits().as_slice() {
         [] => Err(Cell::none("no agent hears another")),
-        told => Ok(Cell::words(told.join(", "))),
+        transmitted => Ok(Cell::words(transmitted.join(", "))),
     }
 }
 

@@ -253,8 +253,8 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
 
 fn surroundings(evidence: &LoopEvidence) -> Option<String> {
     Some(match evidence {
-        LoopEvidence::Pushes { torques_for_ever, others_for_ever, hands_for_ever, .. }
-            if [torques_for_ever, others_for_ever, hands_for_ever].iter().all(|all| all.is_empty()) =>
+        LoopEvidence::Pushes { torques_for_ever, others_for_ever, springs_for_ever, .. }
+            if [torques_for_ever, others_for_ever, springs_for_ever].iter().all(|all| all.is_empty()) =>
         {
             "a push whose formula has a value at all times until it ends, or an earlier end, `for_s`".into()
         }
