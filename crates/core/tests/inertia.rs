@@ -8,7 +8,7 @@ use forwardstep_core::robot::tree::{
     inertia_about_frame,
 };
 use forwardstep_core::robot::{
-    Definiteness, InertiaBound, Lagrangian, PlanarArm, PlanarLinks, PointMass, Ship, TipKinematics,
+    Definiteness, Drives, InertiaBound, Lagrangian, PlanarArm, PlanarLinks, PointMass, Ship, TipKinematics,
 };
 use forwardstep_core::{Gain, ResolvedGain, Scalar};
 use proptest::prelude::*;
@@ -93,6 +93,35 @@ proptest! {
         let bound = assembled.tree.inertia_bound(&assembled.theta).unwrap().unwrap();
         let ratio = sharpness(&assembled.tree, &assembled.theta, &bound, 60, seed);
         prop_assert!(ratio > 0.02, "{ratio}");
+    }
+
+    /// Bodies without mass and inertia behind some of the rotors.
+    #[test]
+    fn prop_the_bound_of_a_tree_with_rotors_holds_at_every_posture(seed in any::<u64>(), joints in 1_usize..8) {
+        let mut random = Random::new(seed);
+        let mut links = random.links(joints);
+        let geared: Vec<usize> = (0..joints).filter(|_| random.chance(0.7)).collect();
+        let hollow = |random: &mut Random| random.chance(0.4);
+        for (joint, link) in links.iter_mut().enumerate() {
+            if geared.contains(&joint) && hollow(&mut random) {
+                link.inertia = [0.0; 10];
+            }
+        }
+        let armatures: Vec<f64> = geared.iter().map(|_| 0.01 + 2.0 * random.number().abs()).collect();
+        let Assembled { tree, theta, .. } = Tree::assemble(&links, GRAVITY).unwrap();
+        let without = tree.inertia_bound(&theta).unwrap();
+        let all_geared = geared.len() == joints;
+        let drives = Drives { geared, ..tree.drives().clone() };
+        let (bodies, tree) = (theta.clone(), tree.with_drives(drives).unwrap());
+        let theta = [theta, armatures.clone()].concat();
+        let with = tree.inertia_bound(&theta).unwrap();
+        prop_assert!(with.is_some() || (without.is_none() && !all_geared));
+        if let Some(bound) = &with {
+            let ratio = sharpness(&tree, &theta, bound, 60, seed);
+            prop_assert!(ratio > 0.01, "{ratio}");
+            let hollow = bodies.chunks(10).any(|body| body.iter().all(|entry| *entry == 0.0));
+            prop_assert!(hollow || bound.least() >= 0.999 * without.map_or(0.0, |bound| bound.least()));
+        }
     }
 
     #[test]
@@ -357,6 +386,40 @@ fn degenerate_parameters_have_no_bound() {
     assert_eq!(bound.fastest(&gain, 1.6).unwrap(), Some(1.6), "a bound that is given already");
     assert!((1.5..1.500_01).contains(&bound.fastest(&gain, 1.4).unwrap().unwrap()), "what is given is no bound");
     assert!(bound.fastest(&Gain::Number(1.0).resolve(2, &[]).unwrap(), 0.0).is_err());
+}
+
+/// The tree with an armature on each of `geared`, and what is known of it.
+fn with_rotors(links: &[LinkSpec], geared: &[(usize, f64)]) -> Definiteness {
+    let Assembled { tree, theta, .. } = Tree::assemble(links, GRAVITY).unwrap();
+    let (joints, armatures): (Vec<usize>, Vec<f64>) = geared.iter().copied().unzip();
+    let drives = Drives { geared: joints, ..tree.drives().clone() };
+    tree.with_drives(drives).unwrap().definiteness(&[theta, armatures].concat(), PIECES).unwrap()
+}
+
+#[test]
+fn rotors_are_inertia_enough_unless_a_body_takes_more_than_they_give() {
+    use JointKind::{Prismatic, Revolute};
+    let least = |found: &Definiteness| match found {
+        Definiteness::Uniform(bound) => bound.least(),
+        Definiteness::Not { .. } | Definiteness::Unknown { .. } => 0.0,
+    };
+    let hollow = |parent, kind| link(parent, X, kind, Z, [0.0; 10]);
+    let chain: Vec<LinkSpec> = (0..6_usize).map(|k| hollow(k.checked_sub(1), Revolute)).collect();
+    let all: Vec<(usize, f64)> = (0..6).map(|k| (k, 0.1 + k as f64)).collect();
+    assert!((least(&with_rotors(&chain, &all)) - 0.1).abs() < 1e-12);
+    assert!(matches!(with_rotors(&chain, &all[1..]), Definiteness::Not { .. }));
+    assert!((least(&with_rotors(&[hollow(None, Prismatic)], &[(0, 3.0)])) - 3.0).abs() < 1e-12);
+    // Of a body with enough of its own, a rotor that gives less is not needed.
+    let body = |moment: f64| inertia_about_frame(5.0, [0.0; 3], [moment, 0.0, moment, 0.0, 0.0, moment]);
+    let heavy = [link(None, [0.0; 3], Revolute, Z, body(2.0))];
+    assert!((least(&with_rotors(&heavy, &[(0, 0.5)])) - 2.0).abs() < 1e-5);
+    assert!((least(&with_rotors(&heavy, &[(0, 8.0)])) - 8.0).abs() < 1e-5);
+    // Moments that no body has.
+    let negative = [0.0, 0.0, 0.0, 0.0, -0.5, 0.0, -0.5, 0.0, 0.0, -0.5];
+    let first = link(None, [0.0; 3], Revolute, Z, negative);
+    assert!(matches!(with_rotors(&[first], &[(0, 0.3)]), Definiteness::Not { .. }));
+    let carried = [link(None, [0.0; 3], Revolute, X, body(2.0)), link(Some(0), X, Revolute, Z, negative)];
+    assert!(matches!(with_rotors(&carried, &[(1, 0.3)]), Definiteness::Not { .. }));
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Fewer points for display that look the same, and what is between them: of every bucket of rows the first as it is, and the least and greatest
-//! value, and break-points at which a signal that jumps is drawn as a jump.
+//! Fewer points for display that look the same, and what is between them: of every bucket of rows the first as it is, of what a signal does until
+//! the last row what shows, and break-points at which a signal that jumps is drawn as a jump.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub(crate) struct Grid {
 enum Place {
     /// One row as it is.
     Row(usize),
-    /// Three points: the first of the rows, then the least and greatest of all of them, the earlier one first.
+    /// Three points: the first of the rows, then at their middle and at the last of them what [`course`] says.
     Bucket(Range<usize>),
     /// Two points, before and after, and between them the row at this very time, if there is one.
     Break(Break),
@@ -100,7 +100,7 @@ impl Grid {
                 Place::Row(row) => points.push(value(*row)),
                 Place::Bucket(rows) => {
                     points.push(value(rows.start));
-                    points.extend(least_and_greatest(rows.clone(), value));
+                    points.extend(course(rows.clone(), rows_t_s, value));
                 }
                 Place::Break(at) => {
                     let [before, after] = at.sides(rows_t_s, value, may_jump);
@@ -192,14 +192,27 @@ impl Break {
     }
 }
 
-/// Both in the order in which they occur, leaving out what is not finite as long as anything is.
-fn least_and_greatest(rows: Range<usize>, value: impl Fn(usize) -> f64) -> [f64; 2] {
+/// What stands at the middle and at the end of some rows: where nothing exceeds the first and the last of them, the signal as it is; where it turns
+/// once, its extreme, and the last value; where it swings, least and greatest in the order in which they occur. What is not finite is left out
+/// as long as anything is.
+fn course(rows: Range<usize>, rows_t_s: &[f64], value: impl Fn(usize) -> f64) -> [f64; 2] {
     let finite = || rows.clone().filter(|row| value(*row).is_finite());
     let least = finite().reduce(|a, b| if value(b) < value(a) { b } else { a });
     let greatest = finite().reduce(|a, b| if value(b) > value(a) { b } else { a });
-    match (least, greatest) {
-        (Some(least), Some(greatest)) => [least.min(greatest), least.max(greatest)].map(value),
-        _ => [f64::NAN; 2],
+    let (Some(least), Some(greatest)) = (least, greatest) else { return [f64::NAN; 2] };
+    let (first, last) = (value(rows.start), value(rows.end - 1));
+    let ends_are_known = first.is_finite() && last.is_finite();
+    match (value(least) < first.min(last), value(greatest) > first.max(last)) {
+        (false, false) if ends_are_known => {
+            let (from_s, to_s) = (rows_t_s[rows.start], rows_t_s[rows.end - 1]);
+            let known: Vec<usize> = finite().collect();
+            let of = |column: &dyn Fn(usize) -> f64| known.iter().map(|row| column(*row)).collect::<Vec<f64>>();
+            let middle = between(&of(&|row| rows_t_s[row]), &of(&value), &[from_s + 0.5 * (to_s - from_s)]);
+            [middle[0], last]
+        }
+        (true, false) if ends_are_known => [value(least), last],
+        (false, true) if ends_are_known => [value(greatest), last],
+        _ => [least.min(greatest), least.max(greatest)].map(value),
     }
 }
 
@@ -283,6 +296,39 @@ mod tests {
         assert_eq!(drawn.len(), grid.t_s.len());
         assert!(drawn.contains(&99.0) && drawn.contains(&-98.0) && !drawn.iter().any(|v| v.is_nan()));
         assert_eq!((drawn[0], drawn[drawn.len() - 1]), (values[0], values[99_999]));
+    }
+
+    /// A curve that was gathered had steps, as flat as a bucket is long, where the run has none.
+    #[test]
+    fn regress_what_rises_and_falls_is_drawn_where_it_is() {
+        let t_s = rows(3001, 0.02);
+        let course = |t: f64| (0.8 * t).sin() * (-0.05 * t).exp();
+        let values: Vec<f64> = t_s.iter().map(|t| course(*t)).collect();
+        let grid = Grid::new(&t_s, &[], 700);
+        let drawn = grid.sample(&t_s, &values, true);
+        // Where it turns, the extreme may stand half a bucket off, by which a curve without slope changes little.
+        let half_s = 0.5 * 0.02 * 13.0;
+        for (t, drawn) in grid.t_s.iter().zip(&drawn) {
+            assert!((course(*t) - drawn).abs() < 0.5 * 0.65 * half_s * half_s * 4.0, "{t}: {drawn}");
+        }
+        // What swings within a bucket keeps its extremes.
+        let ripple: Vec<f64> = (0..3001).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        let drawn = grid.sample(&t_s, &ripple, true);
+        assert!(drawn.windows(3).all(|three| three.contains(&1.0) && three.contains(&-1.0)));
+    }
+
+    #[test]
+    fn the_course_of_a_bucket_is_itself_its_extreme_or_both() {
+        let t_s = rows(5, 1.0);
+        let of = |values: [f64; 5]| course(0..5, &t_s, |row| values[row]);
+        assert_eq!(of([0.0, 1.0, 3.0, 4.0, 9.0]), [3.0, 9.0]);
+        assert_eq!(of([9.0, f64::NAN, f64::NAN, 5.0, 1.0]), [9.0 - 8.0 / 3.0, 1.0]);
+        assert_eq!(of([0.0, 7.0, 3.0, 2.0, 1.0]), [7.0, 1.0]);
+        assert_eq!(of([0.0, 1.0, 0.5, -7.0, -1.0]), [1.0, -7.0]);
+        assert_eq!(of([0.0, -1.0, -0.5, -7.0, -1.0]), [-7.0, -1.0]);
+        assert_eq!(of([0.0, -7.0, 8.0, 2.0, -1.0]), [-7.0, 8.0]);
+        assert_eq!(of([f64::NAN, 1.0, 4.0, 2.0, 3.0]), [1.0, 4.0]);
+        assert!(of([f64::NAN; 5]).iter().all(|value| value.is_nan()));
     }
 
     /// Extremes stand near the time at which they occurred; what is said to be a row has the values of one.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use forwardstep_core::LengthError;
+use forwardstep_core::robot::Drives;
 use forwardstep_core::robot::tree::{
     Anchor, Assembled, JointKind, LinkJoint, LinkSpec, MassMatrixError, Placement, Tree, TreeError, inertia_defects,
 };
@@ -72,7 +73,7 @@ pub(super) fn build(
         return Err(reading.error(link.span.clone(), UrdfProblem::Overflow { link: link.name.clone() }));
     }
     let bodies: Vec<String> = assembled.moving.iter().map(|held| links[arranged[*held].link].name.clone()).collect();
-    check_mass_matrix(reading, &assembled, &bodies, &freedoms)?;
+    check_mass_matrix(reading, &assembled, &bodies, &freedoms, &options.armature)?;
     look_at_inertias(reading, links, arranged, &specs, &carrier);
     for (body, held) in assembled.moving.iter().enumerate() {
         if assembled.theta[10 * body] == 0.0 {
@@ -109,17 +110,25 @@ fn tree_error<'l>(reading: &Reading<'_>, error: TreeError, link_of: impl Fn(usiz
     }
 }
 
-/// Refuses a robot that some motion costs no energy.
+/// Refuses a robot that some motion costs no energy, be it that of a rotor.
 fn check_mass_matrix(
     reading: &Reading<'_>,
     assembled: &Assembled,
     bodies: &[String],
     freedoms: &[Freedom<'_>],
+    armature: &[f64],
 ) -> Result<(), UrdfError> {
+    // Whether there are as many as joints is for who gives the robot its drives.
+    let own = |joint: usize| armature.get(if armature.len() == 1 { 0 } else { joint }).copied();
+    let rotors = (0..freedoms.len()).filter_map(|joint| Some((joint, own(joint).filter(|armature| *armature > 0.0)?)));
+    let (geared, armatures): (Vec<usize>, Vec<f64>) = rotors.unzip();
+    let drives = Drives { geared, ..assembled.tree.drives().clone() };
+    let tree = assembled.tree.clone().with_drives(drives).unwrap_or_else(|_| assembled.tree.clone());
+    let theta = [&assembled.theta[..], &armatures].concat();
     let anywhere = [f64::NEG_INFINITY, f64::INFINITY];
     let range: Vec<[f64; 2]> = freedoms.iter().map(|f| f.motion.position_limits.unwrap_or(anywhere)).collect();
     let samples = if freedoms.len() <= 64 { 16 } else { 2 };
-    match assembled.tree.check_mass_matrix(&assembled.theta, &range, samples) {
+    match tree.check_mass_matrix(&theta, &range, samples) {
         Ok(()) => Ok(()),
         Err(MassMatrixError::NotPositiveDefinite { body, pivot, q, .. }) => {
             let Freedom { joint, motion, .. } = &freedoms[body];

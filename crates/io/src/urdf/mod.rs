@@ -44,6 +44,9 @@ use xml::{Element, Reading, UrdfError};
 pub struct UrdfOptions {
     /// Joints that are held at a value, in rad or m, and so lose their degree of freedom.
     pub locked: Vec<(String, f64)>,
+    /// The armatures that the joints get behind it, in kg m² or kg, which may be all that resists a joint: one for each joint that moves,
+    /// one for all of them, or none.
+    pub armature: Vec<f64>,
     /// What to do about Coulomb friction.
     pub friction: FrictionPolicy,
     /// Acceleration of free fall in the frame of the base, in m/s².
@@ -52,7 +55,12 @@ pub struct UrdfOptions {
 
 impl Default for UrdfOptions {
     fn default() -> Self {
-        UrdfOptions { locked: Vec::new(), friction: FrictionPolicy::Refuse, gravity: [0.0, 0.0, -9.81] }
+        UrdfOptions {
+            locked: Vec::new(),
+            armature: Vec::new(),
+            friction: FrictionPolicy::Refuse,
+            gravity: [0.0, 0.0, -9.81],
+        }
     }
 }
 

@@ -351,7 +351,7 @@ impl Problem for UrdfProblem {
                     .to_owned()
             }
             UrdfProblem::NotPositiveDefinite { .. } => {
-                "give the body mass and inertia that resist its joint, or lock the joint".to_owned()
+                "give the body mass and inertia that resist its joint, state the `armature` of the joints in the scenario, or lock the joint".to_owned()
             }
             UrdfProblem::NoLinks => "a robot is a tree of links, the outermost elements <link name=\"…\">, that joints hold together".to_owned(),
             UrdfProblem::NothingMoves { locked: 0, .. } => {

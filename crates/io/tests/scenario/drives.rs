@@ -263,3 +263,43 @@ fn robots_in_closed_form_have_the_same_keys_and_none_leaves_them_as_they_were() 
     let error = read(&blind).unwrap_err().to_string();
     assert!(error.contains("point masses without damping and friction"), "{error}");
 }
+
+/// Dummy links, of which exports have many.
+#[test]
+fn a_link_without_mass_moves_where_its_joint_has_an_armature() {
+    use forwardstep_check::{Answer, Id, check};
+    use forwardstep_io::scenario::open_scenario;
+    let folder = tempfile::tempdir().unwrap();
+    let body = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let joint = |k: usize| {
+        let held = if k == 0 { "base".into() } else { format!("l{}", k - 1) };
+        format!(
+            "<joint name='j{k}' type='revolute'><parent link='{held}'/><child link='l{k}'/><axis xyz='0 1 0'/>\
+             <origin xyz='0.3 0 0'/><limit lower='-1' upper='1' effort='9' velocity='9'/></joint>"
+        )
+    };
+    let urdf = format!(
+        "<robot name='r'><link name='base'/><link name='l0'>{body}</link><link name='l1'/>{}{}</robot>",
+        joint(0),
+        joint(1)
+    );
+    std::fs::write(folder.path().join("dummy.urdf"), urdf).unwrap();
+    let path = folder.path().join("own.toml");
+    let opened = |armature: &str| {
+        let robot = format!("robot.urdf = {{ file = \"dummy.urdf\"{armature} }}");
+        let text = ONE.replace(ONE.lines().find(|line| line.starts_with("robot.urdf")).unwrap(), &robot);
+        std::fs::write(&path, text.replace("LAW", "")).unwrap();
+        open_scenario(path.to_str().unwrap()).map_err(|error| error.to_string())
+    };
+    for armature in [", armature = 0.05", ", armature = [0, 0.05]"] {
+        let report = check(&opened(armature).unwrap().setup);
+        let inertia = report.hypotheses.iter().find(|found| found.id == Id::UniformInertia).unwrap();
+        assert_eq!(inertia.answer(), Answer::Holds, "{armature}");
+    }
+    for armature in ["", ", armature = [0.05, 0]", ", armature = 0", ", armature = [0.05]", ", armature = -1"] {
+        let error = opened(armature).unwrap_err();
+        let counted = armature.ends_with("[0.05]");
+        let said = if counted { "`armature` has 1 entry" } else { "joint `j1` feels the inertia 0 kg m² of `l1`" };
+        assert!(error.contains(said), "{armature}: {error}");
+    }
+}

@@ -271,22 +271,22 @@ fn refusals() -> Vec<(String, UrdfOptions, &'static str)> {
         (
             with_arm(""),
             default(),
-            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, or lock the joint",
+            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, state the `armature` of the joints in the scenario, or lock the joint",
         ),
         (
             with_arm(&inertial("0 0 1", 1.0, [0.0; 3])),
             default(),
-            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, or lock the joint",
+            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, state the `armature` of the joints in the scenario, or lock the joint",
         ),
         (
             with_arm(&inertial("0.5 0 0", 1.0, [0.1, 0.1, -0.3])),
             default(),
-            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia -0.05 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, or lock the joint",
+            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia -0.05 kg m² of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, state the `armature` of the joints in the scenario, or lock the joint",
         ),
         (
             robot(&[BASE, r#"<link name="arm"/>"#, &joint("prismatic", &format!("{z}{LIMIT}"))]),
             default(),
-            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, or lock the joint",
+            "r.urdf:4:14: the mass matrix is not positive definite: joint `turn` feels the inertia 0 kg of `arm` and what it carries, at q = 0\n  help: give the body mass and inertia that resist its joint, state the `armature` of the joints in the scenario, or lock the joint",
         ),
         // locks
         (

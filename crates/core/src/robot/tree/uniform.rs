@@ -24,6 +24,8 @@
 //! - the group of a revolute joint on the base, or on what only slides, turns about a fixed direction: ω = a q̇_i, and of its inertia
 //!   the moment about a counts. If the base carries the joint itself, that body turns about a fixed line, and its moment about that
 //!   line counts, with which its v is used up;
+//! - the rotor of a joint with an armature J turns with the rate q̇_i whatever the bodies do: q̇_i is in ξ with the weight J, and is taken
+//!   from there where the bodies say less. A body that is left out so must have no negative moment;
 //! - a group whose moments about two axes vanish or are not known, as those of a thin rod may, still has one about its joint, which is
 //!   enough where all joints on it are parallel and nothing couples that axis to the others.
 //!
@@ -72,6 +74,8 @@ enum Source {
     Slide(usize),
     /// ω of a group.
     Turn(usize),
+    /// q̇ of a joint, as its rotor has it; of vectors, the z axis stands for it.
+    Rotor(usize),
 }
 
 /// A row of G: what is taken of each source.
@@ -95,8 +99,14 @@ impl Tree {
     /// [`LengthError`] when `theta` has the wrong length.
     pub fn inertia_bound(&self, theta: &[f64]) -> Result<Option<InertiaBound>, LengthError> {
         LengthError::check("theta", self.theta_len(), theta.len())?;
-        let inverse = Moving::of(self, theta).and_then(|moving| moving.inverse_bound());
-        Ok(inverse.and_then(|inverse| InertiaBound::by_inverses(vec![inverse])))
+        let bound = |moving: &Moving| InertiaBound::by_inverses(vec![moving.inverse_bound()?]);
+        Ok(Moving::of(self, theta).and_then(|moving| {
+            let by_bodies = bound(&moving);
+            let with_rotors = moving.with_rotors().and_then(|moving| bound(&moving));
+            let (least, most) =
+                (by_bodies.as_ref().map(InertiaBound::least), with_rotors.as_ref().map(InertiaBound::least));
+            if most > least { with_rotors } else { by_bodies }
+        }))
     }
 }
 
@@ -106,12 +116,15 @@ struct Moving {
     /// The first is the base.
     groups: Vec<Group>,
     rows: Vec<Row>,
+    /// The armatures of the joints, where there are any.
+    armatures: Vec<Option<f64>>,
 }
 
 impl Moving {
     fn of(tree: &Tree, theta: &[f64]) -> Option<Self> {
         let base = Group { inertia: Sym3::ZERO, about_axis: None };
-        let mut moving = Moving { parts: Vec::new(), groups: vec![base], rows: Vec::new() };
+        let armatures = tree.bodies.iter().map(|body| theta.get(body.armature?).copied()).collect();
+        let mut moving = Moving { parts: Vec::new(), groups: vec![base], rows: Vec::new(), armatures };
         for (body, pi) in tree.bodies.iter().zip(theta.as_chunks::<10>().0) {
             match body.kind {
                 JointKind::Revolute => moving.turn(body, pi)?,
@@ -178,22 +191,53 @@ impl Moving {
         Some(())
     }
 
+    /// With the rates of rotors in the place of those of bodies, wherever N has less on its diagonal so, or nothing otherwise; `None`
+    /// without rotors.
+    fn with_rotors(mut self) -> Option<Self> {
+        self.armatures.iter().flatten().next()?;
+        for joint in 0..self.rows.len() {
+            let unit = Vec3::new(Interval::point(0.0), Interval::point(0.0), Interval::point(1.0));
+            let by_rotor = vec![(Source::Rotor(joint), unit)];
+            let Some(least) = self.shared(&by_rotor, &by_rotor) else { continue };
+            let by_bodies = self.shared(&self.rows[joint], &self.rows[joint]);
+            if by_bodies.is_none_or(|own| own.high > least.high) {
+                self.rows[joint] = by_rotor;
+            }
+        }
+        Some(self)
+    }
+
+    /// Whether what no joint uses adds nothing negative to ξᵀW ξ.
+    fn leaves_nothing_negative(&self) -> bool {
+        let used = |group| self.rows.iter().flatten().any(|(source, _)| *source == Source::Turn(group));
+        let sound = |Group { inertia, about_axis }: &Group| match about_axis {
+            Some(moment) => moment.low >= 0.0,
+            None => inverted(inertia).is_some() || (stands_alone(inertia) && inertia.zz.low >= 0.0),
+        };
+        self.groups.iter().enumerate().skip(1).all(|(group, own)| used(group) || sound(own))
+    }
+
+    /// What two rows have in common: Σ aᵀ W⁻¹ b over the sources of both.
+    fn shared(&self, one: &Row, other: &Row) -> Option<Interval> {
+        let mut sum = Interval::point(0.0);
+        for (source, a) in one {
+            for (_, b) in other.iter().filter(|(other, _)| other == source) {
+                sum = sum + self.weight(*source)?.form(*a, *b);
+            }
+        }
+        Some(sum)
+    }
+
     /// N.
     fn inverse_bound(&self) -> Option<Enclosed> {
         let n = self.rows.len();
         let mut bound = Enclosed::zero(n);
-        for (source, _) in self.rows.iter().flatten() {
-            self.weight(*source)?;
+        if !self.leaves_nothing_negative() {
+            return None;
         }
         for i in 0..n {
             for k in 0..=i {
-                let mut entry = Interval::point(0.0);
-                for (source, a) in &self.rows[i] {
-                    for (_, b) in self.rows[k].iter().filter(|(other, _)| other == source) {
-                        entry = entry + self.weight(*source)?.form(*a, *b);
-                    }
-                }
-                bound.set(i, k, entry);
+                bound.set(i, k, self.shared(&self.rows[i], &self.rows[k])?);
             }
         }
         Some(bound)
@@ -205,6 +249,7 @@ impl Moving {
         let positive = |weight: Interval| (weight.low > 0.0).then(|| one / weight);
         match source {
             Source::Slide(body) => positive(self.parts[body].mass).map(Inverse::Number),
+            Source::Rotor(joint) => positive(Interval::point(self.armatures[joint]?)).map(Inverse::Number),
             Source::Turn(group) => {
                 let Group { inertia, about_axis } = &self.groups[group];
                 if let Some(moment) = about_axis {

@@ -79,6 +79,7 @@ fn from_urdf(file: &UrdfFile, folder: &mut InputFolder) -> Result<RobotRead, Sto
     let usual = UrdfOptions::default();
     let options = UrdfOptions {
         locked: file.locked.0.iter().map(|(joint, value)| (joint.value.clone(), value.value)).collect(),
+        armature: file.armature.as_ref().map_or_else(Vec::new, |place| place.value.each(1)),
         friction: match file.friction {
             Some(FrictionFile::Ignore) => FrictionPolicy::Ignore,
             Some(FrictionFile::Dry(_) | FrictionFile::Smooth(_)) => FrictionPolicy::Read,
