@@ -1311,8 +1311,7 @@ def path(agent, root, locked):
     joints, link = {joint.find("child").get("link"): joint for joint in root.findall("joint")}, agent.gains["end_effector"]["link"]
     found = []
     while link in joints:
-        joint = joints.pop(link)
-        origin, link, angle = joint.find("origin"), joint.find("parent").get("link"), locked.get(joint.get("name"))
+        origin, link, angle = (joint := joints.pop(link)).find("origin"), joint.find("parent").get("link"), locked.get(joint.get("name"))
         found.append(Joint(joint.get("type"), joint.get("type") in MOVING and angle is None, exact(angle or 0, "locked"),
                            numbers(joint.find("axis"), "xyz", "1 0 0"), numbers(origin, "rpy"), numbers(origin, "xyz")))
     return found
@@ -1512,9 +1511,10 @@ def rests(agent):
 
 # Delays that are one number, however they are written.
 def all_constant(scenario):
-    # The last graph recurs, whatever the order.
-    ends = lambda of: of.get("values_s") or of.get("value_s") or (of.get("min_s", 0), of.get("max_s", 0) + of.get("amplitude_s", 0))
-    same = lambda kind, of: kind == "constant_s" or kind not in ("formula_s", "packets", "log", "hold_log") and len({*ends(of)}) == 1
+    # The last graph recurs, whatever the order, and a delay that does not repeat stays at its last value.
+    ends = lambda of: of.get("values_s", [])["period_s" not in of and -1:] or of.get("value_s") or [of.get("min_s"), of.get("max_s")]
+    told = lambda kind, of: kind not in ("formula_s", "packets", "log", "hold_log") and not of.get("amplitude_s")
+    same = lambda kind, of: kind == "constant_s" or told(kind, of) and len({*ends(of)}) == 1
     return scenario.fixed(scenario.recurring()) and all(not isinstance(e.weight, str) and same(*e.delay[:2]) for e in scenario.graphs[-1])
 
 # What follows from the text alone, by (id, kind): from the scenario, and the agents that the claim names.

@@ -1201,9 +1201,13 @@ class FalseProofs(unittest.TestCase):
         kind = lambda entry: entry.update(proof={"kind": "constant"})  # noqa: E731
         for delay in ("saw_tooth = { min_s = 0.3, max_s = 0.3, period_s = 1 }", "sinusoid = { mean_s = 0.3, period_s = 1 }",
                       "random_hold = { hold_s = [1, 2], value_s = [0.3, 0.3], seed = 1 }",
-                      "piecewise_constant = { times_s = [0, 1], values_s = [0.3, 0.3] }"):
+                      "piecewise_constant = { times_s = [0, 1], values_s = [0.3, 0.3] }",
+                      "piecewise_constant = { times_s = [0, 1], values_s = [0.3, 0.3], period_s = 2 }",
+                      # From its last value on it does not change.
+                      "piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0.3] }"):
             self.accepted(name, each, kind, (constant, f"delay.{delay}"))
         for delay in ("saw_tooth = { min_s = 0.2, max_s = 0.3, period_s = 1 }", "sinusoid = { mean_s = 0.3, amplitude_s = 0.1, period_s = 1 }",
+                      "piecewise_constant = { times_s = [0, 1], values_s = [0.1, 0.3], period_s = 2 }", "saw_tooth = { max_s = 0.3, period_s = 1 }",
                       "random_hold = { hold_s = [1, 2], value_s = [0.2, 0.3], seed = 1 }", 'formula_s = "0.3 + 0.1*sin(t)"', "packets = { period_s = 1 }"):
             self.rejected(name, each, "is not so by the text", kind, (constant, f"delay.{delay}"))
 

@@ -41,7 +41,7 @@ use crate::instance::{designed, is_consensus};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
 use crate::null_vector::{NoNullVector, NullVector, null_vector};
 use crate::prediction::{NoIdeal, family_start};
-use crate::surroundings::dry_loss_w;
+use crate::surroundings::{dry_loss_w, endless};
 
 /// The value that all agents will agree on.
 #[derive(Clone, Debug, PartialEq)]
@@ -273,7 +273,7 @@ fn by_receiver(agents: usize, edges: &[Edge]) -> Vec<Vec<Edge>> {
 
 /// Whether something acts on the agent without end.
 fn pushed_for_ever(agent: &AgentSetup) -> bool {
-    agent.pushes.iter().any(|push| push.span_s()[1] == f64::INFINITY)
+    agent.pushes.iter().any(endless)
 }
 
 #[cfg(test)]

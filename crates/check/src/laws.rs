@@ -36,13 +36,26 @@ pub(crate) fn claim(setup: &Setup) -> Option<Claim> {
         return kind_of(setup.agents.first()?).claim(setup);
     }
     Some(if setup.all_track() {
-        Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() }
+        let theorem = Theorem::Targets(side_by_side(setup).into_iter().map(|claim| claim.theorem).collect());
+        Claim { theorem, promises: "every agent reaches its own target".into() }
     } else {
-        Claim {
-            theorem: Theorem::Mixture(treated),
-            promises: "all agents agree and come to rest: xᵢ − xⱼ → 0 and ẋᵢ → 0".into(),
-        }
+        let promises = if setup.agents.iter().any(|agent| agent.target.is_some()) {
+            "with y = x − offset all agents agree on y, and it comes to rest: yᵢ − yⱼ → 0 and ẏᵢ → 0"
+        } else {
+            "all agents agree and come to rest: xᵢ − xⱼ → 0 and ẋᵢ → 0"
+        };
+        Claim { theorem: Theorem::Mixture(treated), promises: promises.into() }
     })
+}
+
+/// What is said of the agents of each place where they are treated, as if there were no others.
+fn side_by_side(setup: &Setup) -> Vec<Claim> {
+    let claim = |treated: &'static str| {
+        let own = setup.agents.iter().filter(|agent| kind_of(agent).treated(agent) == treated);
+        let own = Setup { agents: own.cloned().collect(), ..setup.clone() };
+        kind_of(own.agents.first()?).claim(&own)
+    };
+    treated(setup).into_iter().filter_map(claim).collect()
 }
 
 /// What the laws themselves ask for.

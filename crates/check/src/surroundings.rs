@@ -47,7 +47,8 @@ pub(crate) fn acts(push: &Push) -> bool {
     begins_s < ends_s
 }
 
-fn endless(push: &Push) -> bool {
+/// Whether it never ends, as far as is known.
+pub(crate) fn endless(push: &Push) -> bool {
     ends_s(push) == f64::INFINITY
 }
 

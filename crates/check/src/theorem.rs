@@ -41,8 +41,8 @@ pub enum Theorem {
     Backstepping,
     /// Agents of different kinds, each treated somewhere; no single theorem.
     Mixture(Vec<&'static str>),
-    /// Agents of different kinds, each with a target of its own.
-    Targets,
+    /// Agents of different kinds, each with a target of its own, and what is said of each kind.
+    Targets(Vec<Theorem>),
     /// (43) for tracking, with these second steps.
     ChainsTrack(Vec<&'static str>),
     /// (43) with (24), with these second steps.
@@ -144,7 +144,7 @@ impl Theorem {
             Theorem::OwnOrders { .. } => "theorem-3-own-orders",
             Theorem::Backstepping => "backstepping",
             Theorem::Mixture(_) => "mixture",
-            Theorem::Targets => "targets",
+            Theorem::Targets(_) => "targets",
             Theorem::ChainsTrack(_) => "chains-track",
             Theorem::ChainsAgree(_) => "chains-agree",
             Theorem::RobotsTrack => "robots-track",
@@ -175,6 +175,10 @@ impl Theorem {
         }
     }
 
+    fn is_of_the_paper(&self) -> bool {
+        matches!(self.source(), Source::Paper | Source::Corrected(_))
+    }
+
     /// Whose it is. Slips are those of PAPER.md that touch the statement.
     pub fn source(&self) -> Source {
         match self {
@@ -182,13 +186,15 @@ impl Theorem {
             | Theorem::Remark3
             | Theorem::Theorem2
             | Theorem::Backstepping
-            | Theorem::Targets
             | Theorem::ContinuousThrust
             | Theorem::Theorem4
             | Theorem::Theorem5
             | Theorem::Theorem8
             | Theorem::Theorem9
             | Theorem::Remark12 => Source::Paper,
+            // No stronger than the weakest of them.
+            Theorem::Targets(all) if all.iter().all(Theorem::is_of_the_paper) => Source::Paper,
+            Theorem::Targets(_) => Source::Derived,
             Theorem::FirstOrder => Source::Corrected("E1, E2, E3"),
             Theorem::Theorem3Velocities { .. } => Source::Corrected("E1, E2"),
             Theorem::Theorem3Positions { .. } => Source::Corrected("E2"),
@@ -247,7 +253,11 @@ impl fmt::Display for Theorem {
             Theorem::Mixture(treated) => {
                 return write!(f, "no single theorem: {} side by side", treated.join(", "));
             }
-            Theorem::Targets => "a theorem of Section V for every agent",
+            Theorem::Targets(all) if all.iter().all(Theorem::is_of_the_paper) => "a theorem of Section V for every agent",
+            Theorem::Targets(all) => {
+                let all: Vec<String> = all.iter().map(Theorem::to_string).collect();
+                return write!(f, "each agent by what is said of its law: {}", all.join("; "));
+            }
             Theorem::ChainsTrack(steps) => {
                 return write!(f, "Section IV, (43) for tracking; second step: {}", steps.join(", "));
             }

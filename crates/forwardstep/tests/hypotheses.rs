@@ -409,7 +409,9 @@ fn thm6_lengths_outside_their_bounds_are_named_with_the_agent() {
 #[test]
 fn targets_of_different_kinds_fall_under_no_single_theorem() {
     let report = check(&arm_and_spacecraft());
-    assert_eq!((report.theorem, report.promises.as_str()), (Theorem::Targets, "every agent reaches its own target"));
+    assert_eq!(report.theorem, Theorem::Targets(vec![Theorem::Theorem6, Theorem::Theorem7]));
+    assert_eq!(report.theorem.to_string(), "a theorem of Section V for every agent");
+    assert_eq!(report.promises, "every agent reaches its own target");
     let has = |id| report.hypotheses.iter().any(|hypothesis| hypothesis.id == id);
     assert!(has(Id::TaskSpaceGains) && has(Id::AttitudeGains) && !has(Id::OneKind));
 }

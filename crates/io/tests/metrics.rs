@@ -30,7 +30,7 @@ fn metrics_are_what_one_computes_by_hand() {
     let (setup, recording) = by_hand();
     let m = Metrics::of(&setup, &recording, Some(&[1.0]), Some(Goal::DisagreementBelow(0.75)));
     assert_eq!(DisagreementSeries::of(&setup, &recording).unwrap().overall, [2.0, 1.0, 0.5, 0.25]);
-    assert_eq!(m.disagreement, Disagreement::Measured { initial: 2.0, last: 0.25, largest: 2.0 });
+    assert_eq!(m.disagreement, Disagreement::Measured { initial: 2.0, last: 0.25, largest: 2.0, passes: false });
     assert_eq!(m.settled_s, Some(2.0));
     let speed = m.speed.unwrap();
     assert_eq!((speed.largest.agent, speed.largest.t_s, speed.largest.value, speed.last), (0, 1.0, 4.0, 0.5));

@@ -206,14 +206,14 @@ pub fn practical(setup: &Setup) -> Practical {
     let whole = WholeLoop::on(setup, &way);
     let mut margin = SamplingMargin::on(setup, &way);
     // Where parameters are known, so that neither freezes what adapts.
-    if let (Some(margin), Some(PracticalAnswer::Adequate)) = (&mut margin, whole.as_ref().map(WholeLoop::answer)) {
+    if let (Some(margin), true) = (&mut margin, whole.as_ref().is_some_and(WholeLoop::decays)) {
         let knows = |agent: &Named| setup.agents.get(agent.index).is_some_and(|agent| !agent.law.is::<Adaptive>());
         margin.held_by_references = margin.start.is_unstable && knows(&margin.start.agent);
     }
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
     let clipped = ClippedCommands::of(setup).map(Finding::ClippedCommands);
-    // What may grow has no bound.
-    let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown);
+    // What may grow has no bound, and where little decays s acts back on the references, which are taken as they are without it.
+    let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::Marginal);
     let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);

@@ -18,7 +18,8 @@
 //!
 //! A torque that is held is that of its sample, δ h late, while the motion asks for w = M ż + C z + g as it is now: over a period
 //! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
-//! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest.
+//! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest. It begins with
+//! zero, so that at sample k it still lacks e^(−ωh k) q̇(0): over the span T the mean of nᵀKn is h q̇(0)ᵀK q̇(0)/((1 − e^(−2ωh)) T).
 //!
 //! All of this is s at the samples. Between them z is held and q̇ moves on, so that s gains ż times the time since the sample: a saw tooth whose
 //! mean square is ⅓ h² żᵀKż, and which adds at most its root to that of the mean of sᵀKs.
@@ -104,8 +105,11 @@ impl PowerBound {
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
             steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
             let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
-            held_w +=
-                setup.control.as_ref().map_or(Some(0.0), |control| held_w_of(control, agent, &gains, &own, span_s))?;
+            if let Some(control) = &setup.control {
+                let moving = held_w_of(control, agent, &gains, &own, span_s)?.sqrt();
+                let drive = moving + begun_w_of(control, &agent.start.dq, &gains, span_s).sqrt();
+                held_w += drive * drive;
+            }
             between_w += setup.control.as_ref().map_or(0.0, |control| between_w_of(control, &gains, &own, span_s));
             agents += 1;
         }
@@ -202,6 +206,14 @@ pub(super) fn held_w_of(
     let lagging = lag_s * lag_s * mean_acceleration_w_s2(gains, way, span_s);
     let drive = (held / span_s).sqrt() + lagging.sqrt();
     Some(drive * drive)
+}
+
+/// D² of a filter that takes a robot for at rest when a run begins, as the mean over a span, W.
+fn begun_w_of(control: &Control, dq: &[f64], gains: &Gains, span_s: f64) -> f64 {
+    let Some(cut_off_rad_s) = Hold::of(control).cut_off_rad_s else { return 0.0 };
+    let (dq, period_s) = (DVector::from_column_slice(dq), 1.0 / control.sample_hz);
+    let forgotten = -libm::expm1(-2.0 * cut_off_rad_s * period_s);
+    period_s * dq.dot(&(&gains.damping * &dq)) / (forgotten * span_s)
 }
 
 /// The mean of sᵀKs of what s gains from one sample to the next along these states of an agent, W.

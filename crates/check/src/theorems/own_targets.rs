@@ -16,8 +16,10 @@ use crate::theorem::Theorem;
 
 /// What is promised to agents that follow targets of their own. All that is asked is asked of their laws and targets.
 pub(super) fn check(setup: &Setup) -> Report {
-    let Claim { theorem, promises } = laws::claim(setup)
-        .unwrap_or_else(|| Claim { theorem: Theorem::Targets, promises: "every agent reaches its own target".into() });
+    let Claim { theorem, promises } = laws::claim(setup).unwrap_or_else(|| Claim {
+        theorem: Theorem::Targets(Vec::new()),
+        promises: "every agent reaches its own target".into(),
+    });
     Report { theorem, promises, hypotheses: Vec::new() }
 }
 

@@ -1,5 +1,6 @@
 //! Theorem 3 for (a5) and (24), of which (aa10) and Theorem 2's (a1) are members.
 
+use forwardstep_sim::delay::{Delay, PiecewiseConstant};
 use forwardstep_sim::graph::{Edge, strong_components};
 use forwardstep_sim::{Exchange, Setup};
 
@@ -72,8 +73,8 @@ fn one_order(setup: &Setup) -> Hypothesis {
 /// What agent i hears is α₀[(κ₀ⱼ/κ₀ᵢ) ψ_j + (1 − κ₀ⱼ/κ₀ᵢ) q_j]: a weighting that is only convex when κ₀ⱼ ≤ κ₀ᵢ along j → i.
 /// Around a cycle that means equality. With a fixed graph and constant delays p + κ₀ᵢ factors out and nothing is needed.
 ///
-/// Asked of graphs that recur. What a schedule that ends goes through before acts for a finite time: the reference dynamics are linear with
-/// bounded coefficients and V bounds s, so all is finite when the last graph begins, and the theorem speaks from there on, with what is
+/// Asked of graphs that recur. What a schedule that ends, or a delay that changes no more, goes through before acts for a finite time: the reference dynamics are linear with
+/// bounded coefficients and V bounds s, so all is finite when the last of it begins, and the theorem speaks from there on, with what is
 /// still under way as its history.
 pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
     let network = &setup.network;
@@ -82,7 +83,7 @@ pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
         [graph] => Some(graph),
         _ => None,
     });
-    let constant = |edge: &Edge| edge.weight.constant().is_some() && network.delays[edge.delay].is_constant();
+    let constant = |edge: &Edge| edge.weight.constant().is_some() && stays_at_last(&network.delays[edge.delay]);
     let over_constants = stays.is_some_and(|graph| graph.iter().all(constant));
     let first_root = |agent: usize| setup.agents[agent].roots_per_s.first_real().unwrap_or(f64::NAN);
     let named = |agent: usize| (Named::of(setup, agent), first_root(agent));
@@ -97,4 +98,9 @@ pub(super) fn common_first_root(setup: &Setup) -> Hypothesis {
         Some((a, b)) => ReferenceEvidence::FirstRoots([named(a), named(b)]),
     };
     Hypothesis::new(Id::CommonFirstRoot, evidence)
+}
+
+/// Whether a delay is one value from some time on.
+fn stays_at_last(delay: &Delay) -> bool {
+    delay.is_constant() || delay.downcast().is_some_and(|pieces: &PiecewiseConstant| pieces.period_s.is_none())
 }

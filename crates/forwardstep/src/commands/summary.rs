@@ -178,7 +178,12 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
     let first = match Injected::earliest(all) {
         None => "nothing that put in 1 % of V".to_owned(),
         Some((own, FirstInjection { cause, t_s })) => {
-            format!("first {}, {} at {} s", named(cause), agent_name(setup, own.agent), instant(*t_s))
+            format!(
+                "first {}, {} at {} s",
+                named(cause).trim_end_matches(','),
+                agent_name(setup, own.agent),
+                instant(*t_s)
+            )
         }
     };
     // V of chains is in a unit of its own.

@@ -158,7 +158,7 @@ const fillCards = () => {
 
 const legend = document.getElementById("legend");
 const chips = runs.map((run) => {
-  const chip = element("button", { type: "button", title: "Click to hide or show" }, element("span", { className: `dot run${run.k}` }), run.name);
+  const chip = element("button", { type: "button", title: `${run.name}: click to hide or show` }, element("span", { className: `dot run${run.k}` }), run.name);
   chip.setAttribute("aria-pressed", "true");
   chip.onclick = () => {
     run.shown = !run.shown;

@@ -38,13 +38,13 @@ const dataOf = (index, block) => {
   const picked = (grid, list) => (rowsOf(grid) ? rowsOf(grid).map((i) => list[i]) : list);
   // Series that stay far from zero are stored less where they are: single precision has seven digits.
   const originOf = (grid, k) => grids[grid].origins[k] ?? 0;
-  // A gap where a number is missing, or cannot stand on a logarithmic axis.
+  // A gap where a number is missing, or cannot stand on a logarithmic axis; `linear` has those that cannot.
   const values = (grid, k, log) => {
     const { t, start } = grids[grid];
     const from = start + k * t.length;
     const origin = originOf(grid, k);
     const list = Array.from(numbers.subarray(from, from + t.length), (v) => (Number.isFinite(v) && (!log || origin + v > 0) ? origin + v : null));
-    return Object.assign(list, { beyond_s: beyond(grid, k) });
+    return Object.assign(list, { beyond_s: beyond(grid, k), linear: () => (log ? values(grid, k, false) : list) });
   };
   // From when on a number is larger than any of single precision; null if it never is.
   const beyond = (grid, k) => {

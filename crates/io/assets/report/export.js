@@ -39,7 +39,7 @@ const csvOf = (plot) => {
   const own = recordedIn(plot);
   const rows = Array.from(own[0], (t, i) => [t, ...series.map(({ k }) => single(own[k][i]))].join(","));
   // A table that left the page does not say what was chosen on it.
-  const named = (s) => ({ ...s, label: [s.label, plot.chosen].filter(Boolean).join(" · ") });
+  const named = (s) => ({ ...s, label: [s.label, plot.columnsSayAll ? "" : plot.chosen].filter(Boolean).join(" · ") });
   return [["t_s", ...series.map(({ s }) => cell(withUnit(plot, named(s))))].join(","), ...rows, ""].join("\n");
 };
 

@@ -22,7 +22,7 @@ const fill = (card, height) => {
   if (kind === "gantt") {
     if (index.gantt.rows.length === 0) return empty();
     if (index.gantt.by_receiver) document.getElementById("gantt-by").textContent = "per receiver; the stronger, the more agents it hears";
-    mine.plot = Object.assign(drawPlot(canvas, ganttCard()), { rows: ganttRows() });
+    mine.plot = Object.assign(drawPlot(canvas, ganttCard()), { rows: ganttRows(), named: () => [] });
     offer(card, mine.plot);
     return;
   }
@@ -51,7 +51,7 @@ const fill = (card, height) => {
   const far = built.log ? null : outliers(built.series);
   mine.plot = drawPlot(canvas, { ...built, times, height: height ?? (isPrinting() ? SHEET_PLOT : card.closest("#stage") && innerWidth > 1000 ? stagePlotHeight() : undefined), within: far?.usual });
   const grid = built.grid ?? "main";
-  mine.plot.recorded = () => mine.plot.data.map((column) => data.picked(grid, column));
+  mine.plot.recorded = () => mine.plot.data.map((column, k) => data.picked(grid, built.series[k - 1]?.values.linear?.() ?? column));
   const lost = built.series.map(({ values }) => values.beyond_s ?? null).filter((t) => t !== null);
   if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
   if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
@@ -155,7 +155,7 @@ const fillAll = () =>
 const legend = document.getElementById("legend");
 const chips = everybody.map((name, i) => {
   const dot = element("span", { className: `dot a${i}` });
-  const chip = element("button", { type: "button", title: "Click to hide or show, double-click to see this one alone" }, dot, name);
+  const chip = element("button", { type: "button", title: `${name}: click to hide or show, double-click to see this one alone` }, dot, name);
   chip.onclick = () => {
     shownAgents.has(i) ? shownAgents.delete(i) : shownAgents.add(i);
     showAgents();

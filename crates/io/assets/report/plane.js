@@ -218,6 +218,8 @@ const drawPlane = (target, [acrossId, upId], height) => {
       return [{}, ...curves.flatMap((c) => [across, up].map((q) => ({ label: `${c.label}, ${q.name}`, unit: q.unit, show: isShown(c), agent: c.agent })))];
     },
     curves: () => curves.filter(isShown).length,
+    // Each column says which quantity it is.
+    columnsSayAll: true,
     get width() {
       return size.width;
     },

@@ -4,12 +4,13 @@ const scene = index.scene;
 const sceneTimes = data.t("scene");
 const RAIL = 10; // how long the longest way on a rail is drawn
 
-// Whom all others come to without a law that leads them: the one agent that hears no other, where all others hear some.
+// Whom all others come to without a law that leads them: the one agent that hears no other and is heard, where all others hear some.
 const root = (() => {
   if (scene.leader || agents.length < 2 || scene.graphs.some((graph, k) => graph.length < (scene.edge_counts[k] ?? 0))) return null;
   const hear = new Set(scene.graphs.flatMap((graph) => graph.map(([, to]) => to)));
+  const heard = new Set(scene.graphs.flatMap((graph) => graph.map(([from]) => from)));
   const deaf = [...agents.keys()].filter((i) => !hear.has(i));
-  return deaf.length === 1 ? deaf[0] : null;
+  return deaf.length === 1 && heard.has(deaf[0]) ? deaf[0] : null;
 })();
 // Everybody, and a leader that is no agent, which looks like those that follow it.
 const bodies = (() => {

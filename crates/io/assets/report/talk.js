@@ -4,6 +4,7 @@ const talk = (() => {
   const [WIDE, HIGH, EDGE] = [1280, 720, 40];
   const SPACE = { left: EDGE, top: 138, width: 740, height: 514 };
   const PLOT = { left: 806, top: 160, width: 440, height: 236 };
+  const HEADING = "600 15px";
   const FRAMES_PER_S = 25;
   const PICTURES_PER_S = 10;
   const part = (id) => document.getElementById(id);
@@ -47,6 +48,7 @@ const talk = (() => {
     host.dataset.plot = card.dataset.plot;
     const [name, letters] = [headingOf(card.querySelector("h3")), card.querySelector("h3 .by")?.textContent];
     host.querySelector("h3").textContent = letters ? `${name}, ${letters}` : name;
+    host.dataset.name = name;
     host.dataset.empty = card.dataset.empty ?? "";
     const before = state.get(host)?.plot ?? null;
     state.set(host, { picks: [...(state.get(card)?.picks ?? [])], plot: before });
@@ -54,9 +56,13 @@ const talk = (() => {
     // Plots are drawn after the script that made them.
     requestAnimationFrame(() => requestAnimationFrame(redraw));
   };
-  const heading = () => {
-    const [name, unit] = [headingOf(host.querySelector("h3")), host.querySelector(".unit")?.textContent.trim()];
-    return [name, unit && `in ${unit}`, chosenOf(host)].filter(Boolean).join(", ");
+  // Its name, unit and picks; how it is measured only where there is room for that too.
+  const heading = (pen) => {
+    const unit = host.querySelector(".unit")?.textContent.trim();
+    const said = (name) => [name, unit && `in ${unit}`, chosenOf(host)].filter(Boolean).join(", ");
+    pen.font = `${HEADING} ${FONT}`;
+    const all = said(headingOf(host.querySelector("h3")));
+    return pen.measureText(all).width <= PLOT.width ? all : said(host.dataset.name);
   };
   const plotNow = () => state.get(host)?.plot ?? null;
 
@@ -70,7 +76,7 @@ const talk = (() => {
     const plot = plotNow();
     y = PLOT.top;
     if (plot) {
-      written(pen, heading(), { font: "600 15px", colour: "--ink", left: PLOT.left, top: PLOT.top - 12, width: PLOT.width, line: 18, most: 1 });
+      written(pen, heading(pen), { font: HEADING, colour: "--ink", left: PLOT.left, top: PLOT.top - 12, width: PLOT.width, line: 18, most: 1 });
       inside(pen, PLOT, () => drawAgain(plot, pen, 0));
       const named = namesOf(plot);
       Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });

@@ -74,7 +74,8 @@ impl Conclusion {
         let sentence = end.sentence(record.setup, arrival, trend);
         // What passes is about as far off as it was lately.
         let left = if passes { lately(t_s, &series.overall) } else { last };
-        let advice = if reached { Vec::new() } else { advice(record, metrics, (trend, slows), bound / left) };
+        let pace = Pace { trend, slows, passes };
+        let advice = if reached { Vec::new() } else { advice(record, metrics, pace, bound / left) };
         Some(Conclusion { reached, sentence, advice })
     }
 }
@@ -191,13 +192,28 @@ impl End {
             Some(_) | None => String::new(),
         };
         let trend = if arrival == Arrival::Passing { "and so near only in passing" } else { trend.words() };
-        format!("not {done}: {} {so_far} ({}){still}, {trend}", gap_words(setup, *axis), names.join(", "))
+        // Who leads has been named with how far it is off.
+        let whose = if led && errors.is_some() { String::new() } else { format!(" ({})", names.join(", ")) };
+        let so_far = if whose.is_empty() { so_far.trim_end_matches(',') } else { &so_far };
+        format!("not {done}: {} {so_far}{whose}{still}, {trend}", gap_words(setup, *axis))
     }
+}
+
+/// How the gap moves at the end.
+#[derive(Clone, Copy)]
+struct Pace {
+    trend: Trend,
+    /// It falls more and more slowly.
+    slows: bool,
+    /// It is small only in passing.
+    passes: bool,
 }
 
 /// What the gap does at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trend {
+    /// There are too few rows to tell.
+    Unknown,
     /// It becomes smaller by this much of itself in a quarter of the run.
     Falls(f64),
     /// It neither falls nor grows much.
@@ -212,12 +228,14 @@ impl Trend {
         match left_in_quarter(0, t_s, overall) {
             Some((left, steadily)) if left < if steadily { FALLS_STEADILY } else { FALLS } => Trend::Falls(left),
             Some((left, _)) if left > 1.0 / FALLS => Trend::Grows,
-            _ => Trend::Stays,
+            Some(_) => Trend::Stays,
+            None => Trend::Unknown,
         }
     }
 
     fn words(self) -> &'static str {
         match self {
+            Trend::Unknown => "and too few rows tell whether it comes closer",
             Trend::Falls(_) => "and coming closer",
             Trend::Stays => "and not coming closer",
             Trend::Grows => "and getting worse",
@@ -265,7 +283,8 @@ fn lately(t_s: &[f64], overall: &[f64]) -> f64 {
 }
 
 /// What to change: `share` of the gap is what may be left. With its trend comes whether that slows down.
-fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, bool), share: f64) -> Vec<String> {
+fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> Vec<String> {
+    let Pace { trend, slows, passes } = pace;
     let mut advice: Vec<String> = Vec::new();
     let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
     let stopped = record.outcome.ending.before_horizon_s().is_some();
@@ -281,7 +300,9 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, (trend, slows): (Trend, boo
         if stopped && end_s <= record.setup.time.end_s {
             advice.push("let it run to its end: at this rate that is enough".into());
         } else if more_s.is_finite() && more_s <= LONGEST * last_t_s {
-            advice.push(if slows {
+            advice.push(if passes {
+                "run longer, and record more often: how long a gap takes that swings through zero cannot be told from its end".into()
+            } else if slows {
                 format!("run longer: it comes closer more and more slowly, so `time.end_s = {end_s}` at least")
             } else {
                 format!("run longer: at this rate `time.end_s = {end_s}` would be enough")
@@ -427,7 +448,7 @@ mod tests {
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 2.0, 3.0, 3.0, 2.9, 2.9]), Trend::Stays);
         assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0, 4.0]), Trend::Grows);
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");
-        assert_eq!(of(&[3.0, 2.0, 1.0]), Trend::Stays, "too short to tell");
+        assert_eq!(of(&[3.0, 2.0, 1.0]), Trend::Unknown, "too short to tell");
     }
 
     #[test]

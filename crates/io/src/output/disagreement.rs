@@ -1,5 +1,6 @@
 //! How far agents are apart, or from where they should be.
 
+use forwardstep_check::prediction::only_passes;
 use forwardstep_sim::recording::{Recording, Signal};
 use forwardstep_sim::setup::Setup;
 use schemars::JsonSchema;
@@ -81,6 +82,9 @@ pub enum Disagreement {
         #[serde(deserialize_with = "number::or_nan")]
         #[schemars(with = "Option<f64>")]
         largest: f64,
+        /// The last is as small as that of agents that agree, but only in passing.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        passes: bool,
     },
     /// There is none.
     Absent(Absence),
@@ -108,10 +112,21 @@ impl Disagreement {
 const AGREED: f64 = 0.01;
 
 impl Disagreement {
-    /// Whether the last is at most 1 % of the largest. Whether that is enough is for the goal to say.
+    /// Of a disagreement in the course of time.
+    pub(super) fn over(t_s: &[f64], overall: &[f64]) -> Disagreement {
+        let largest = overall.iter().copied().fold(0.0, greater);
+        Disagreement::Measured {
+            initial: overall.first().copied().unwrap_or(f64::NAN),
+            last: overall.last().copied().unwrap_or(f64::NAN),
+            largest,
+            passes: only_passes(t_s, overall, AGREED * largest),
+        }
+    }
+
+    /// Whether the last is at most 1 % of the largest, and not just on its way through. Whether that is enough is for the goal to say.
     pub fn is_agreement(&self) -> bool {
         match *self {
-            Disagreement::Measured { last, largest, .. } => last <= AGREED * largest,
+            Disagreement::Measured { last, largest, passes, .. } => last <= AGREED * largest && !passes,
             Disagreement::Absent(_) => false,
         }
     }
@@ -272,7 +287,7 @@ mod tests {
 
     #[test]
     fn what_is_left_decides_whether_agreement_was_reached() {
-        let measured = |last: f64| Disagreement::Measured { initial: 1.0, last, largest: 2.0 }.is_agreement();
+        let measured = |last: f64| Disagreement::over(&[0.0, 1.0, 200.0], &[1.0, 2.0, last]).is_agreement();
         assert_eq!([0.0, 0.02, 0.021, 2.0, f64::NAN].map(measured), [true, true, false, false, false]);
     }
 

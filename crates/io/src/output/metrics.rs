@@ -243,11 +243,7 @@ impl Metrics {
             }),
             final_tracking_error: final_tracking_error(&table),
             disagreement: match &series {
-                Ok(DisagreementSeries { overall, .. }) => Disagreement::Measured {
-                    initial: overall.first().copied().unwrap_or(f64::NAN),
-                    last: overall.last().copied().unwrap_or(f64::NAN),
-                    largest: overall.iter().copied().fold(0.0, greater),
-                },
+                Ok(DisagreementSeries { overall, .. }) => Disagreement::over(table.t_s, overall),
                 Err(absence) => Disagreement::Absent(*absence),
             },
             speed: speed(&table),
@@ -346,6 +342,9 @@ fn rotors(table: &Table<'_>, agent: usize) -> Vec<LimitReached> {
     reached.collect()
 }
 
+/// How far, as a part of it, rounding takes a command from a limit that is enforced.
+const ROUNDED: f64 = 1e-14;
+
 /// `place` with its numbers filled in, if any value lies outside of `range`, or where what is enforced `clips` it: on the border, or at the last
 /// step within it of torques that are rounded.
 fn beyond(
@@ -360,6 +359,8 @@ fn beyond(
     let mut rows = 0_usize;
     for (&t_s, &value) in t_s.iter().zip(values) {
         let (limit, excess) = if value - high > low - value { (high, value - high) } else { (low, low - value) };
+        // What is enforced may be off by what its sums are rounded.
+        let excess = if place.enforced && excess <= ROUNDED * limit.abs() { 0.0 } else { excess };
         if excess > 0.0 || clips.is_some_and(|[low, high]| value <= low || value >= high) {
             rows += 1;
             let excess = excess.max(0.0);

@@ -208,6 +208,12 @@ impl WholeLoop {
         }
     }
 
+    /// Whether nothing in it grows, fast or slowly, as it begins or further on.
+    pub(super) fn decays(&self) -> bool {
+        let grows = self.lasting_per_s().or(self.start_per_s()).or(self.astray_per_s());
+        self.answer() <= PracticalAnswer::Marginal && grows.is_none()
+    }
+
     /// Whether what grows so fast would have been seen in the trial, from whatever it begins with.
     pub(super) fn is_contradicted(&self, rate_per_s: f64) -> bool {
         self.trial.lasted && rate_per_s * self.end_s > SEEN

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use forwardstep::io::output::{Disagreement, LimitKind, LimitReached, Metrics, ending_sentence, names, stiff_words};
-use forwardstep::io::scenario::{LawTemplate, Scenario, Template, Tuning};
+use forwardstep::io::scenario::{Goal, LawTemplate, Scenario, Template, Tuning};
 use forwardstep::sim::quantity::{about, with_power};
 use forwardstep::sim::recording::{BreakdownCause, Signal};
 use forwardstep::sim::{Ending, Setup, simulate};
@@ -247,7 +247,10 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
     let words =
         [about(last).to_string(), names::gap_unit(setup), from.to_owned()].into_iter().filter(|word| !word.is_empty());
     let gap = words.collect::<Vec<_>>().join(" ");
-    if last <= MARGIN * goal {
+    // What swings may be small at the very end, and will not be a moment later.
+    let asked = Some(Goal::DisagreementBelow(goal));
+    let stays = last == 0.0 || Metrics::of(setup, &outcome.recording, None, asked).settled_s.is_some();
+    if last <= MARGIN * goal && stays {
         let leaves = metrics.limits_reached.iter().find(|limit| limit.kind == LimitKind::Position);
         let leaves = leaves.map(|limit| {
             format!("{} of {}", names::axis_name(setup, limit.agent, limit.axis), names::agent_name(setup, limit.agent))
@@ -271,6 +274,7 @@ fn run(scenario: &Scenario, effort: &mut usize) -> Result<Went, Status> {
     if last.is_finite() && last < FALLS * largest {
         // As fast as from the largest to the last, and some more.
         let needs_s = 1.2 * end_s * (MARGIN * goal / largest).ln() / (last / largest).ln();
+        let needs_s = if stays { needs_s } else { needs_s.max(1.5 * end_s) };
         return Ok(Went::TooShort { needs_s: (needs_s / 10.0).ceil() * 10.0, gap });
     }
     Ok(Went::Badly(format!("{gap} after {end_s} s, and not coming closer")))

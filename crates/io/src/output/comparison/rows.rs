@@ -6,6 +6,7 @@ use forwardstep_check::Answer;
 use forwardstep_check::smoothness::LargestJump;
 use forwardstep_core::signal::superscript;
 use forwardstep_sim::recording::{Ending, Signal};
+use forwardstep_sim::reference::Desired;
 use toml::Table as Toml;
 
 use super::super::guarantee::{Guarantee, GuaranteeFound};
@@ -219,6 +220,10 @@ fn told(s: &Subject<'_>) -> Result<Cell, Cell> {
 }
 
 fn order(s: &Subject<'_>) -> Result<Cell, Cell> {
+    // Desired dynamics are one polynomial for all, of which roots, where they are stated, are no agent's.
+    if let Some(desired) = s.setup().reference.downcast::<Desired>() {
+        return Ok(Cell::number(desired.polynomial.order() as f64, ""));
+    }
     match words::orders(s.setup()) {
         None if s.setup().following().is_some() => Err(Cell::none("it is that of the design behind a leader")),
         None => Err(Cell::none("its reference dynamics have no roots")),

@@ -139,7 +139,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
             }))
         }
         @match metrics.disagreement {
-            Disagreement::Measured { initial, last, largest } => (fact(Gap::of(setup).name(), html! {
+            Disagreement::Measured { initial, last, largest, .. } => (fact(Gap::of(setup).name(), html! {
                 (number(initial)) " at the start, " (number(largest)) " at most, "
                 strong { (quantity(last, &unit)) } " at the end"
             })),

@@ -35,7 +35,7 @@ pub struct UrdfFile {
     #[schemars(with = "Option<NotNegativeEach>")]
     pub damping: Option<At<AxisValues>>,
     /// The inertia of the rotors behind the gears, for all joints or for each, in kg m² or kg: n²J for a rotor with the inertia J that
-    /// turns n times as fast as its joint. Default: none.
+    /// turns n times as fast as its joint. It may be all that resists the joint of a link without mass. Default: none.
     #[schemars(with = "Option<NotNegativeEach>")]
     pub armature: Option<At<AxisValues>>,
     /// What to do with Coulomb friction. Without it a URDF that states some is refused.
