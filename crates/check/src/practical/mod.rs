@@ -212,11 +212,12 @@ pub fn practical(setup: &Setup) -> Practical {
     }
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
     let clipped = ClippedCommands::of(setup).map(Finding::ClippedCommands);
-    // What may grow has no bound, and where little decays s acts back on the references, which are taken as they are without it.
-    let grows = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::Marginal);
-    let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !grows);
+    // What may grow has no bound, and where samples slow what decays, s acts back on the references, which are taken as they are without it.
+    let slowed = |whole: &WholeLoop| whole.start.slowed_per_s().is_some();
+    let unbounded = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown || slowed(whole));
+    let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !unbounded);
     let margin = margin.map(Finding::SamplingMargin);
-    let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !grows).map(Finding::TrackingDisagreement);
+    let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !unbounded).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);
     let whole = whole.map(Finding::WholeLoop);
     Practical { findings: [margin, whole, load, clipped, power, agreement].into_iter().flatten().collect() }

@@ -37,8 +37,8 @@ fn the_margin_is_adequate_up_to_a_half_and_inadequate_from_one_on() {
     };
     use PracticalAnswer::{Adequate, Inadequate, Marginal};
     // From one on it is inadequate, unless the loop as a whole decays: references answer s, and help for a little.
-    let answers = [5.01, 4.99, 2.51, 2.49, 2.0].map(|sample_hz| said(sample_hz, 0.0).0);
-    assert_eq!(answers, [Adequate, Marginal, Marginal, Marginal, Inadequate]);
+    let answers = [5.01, 4.99, 2.51, 2.49, 2.0, 1.0].map(|sample_hz| said(sample_hz, 0.0).0);
+    assert_eq!(answers, [Adequate, Marginal, Marginal, Marginal, Marginal, Inadequate]);
     assert!(said(2.49, 0.0).1.contains("as a whole, with references that answer it, the loop decays"));
     // A torque that comes late by a quarter of a period: k up to 4.
     assert_eq!([1.26, 1.0].map(|sample_hz| said(sample_hz, 0.25).0), [Marginal, Inadequate]);

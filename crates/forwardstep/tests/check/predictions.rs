@@ -106,7 +106,7 @@ fn regress_delays_that_stay_and_pushes_that_come_to_zero_are_over() {
         masses(["[1, 2]", "[1, 2]"], &push)
     };
     let (over, lasts) = (check(&pushed("max(0, 1 - t/100)"), 0), check(&pushed("2 + sin(t)"), 1));
-    assert!(over.contains("predicted agreement: (") && !over.contains("for ever"), "{over}");
+    assert!(over.contains("predicted agreement: (") && !over.contains("pushed for ever"), "{over}");
     assert!(lasts.contains("is pushed for ever"), "{lasts}");
 }
 
