@@ -269,6 +269,27 @@ def rows_as_recorded(browser, page, name, joint):
         expect(100 < len(rows) < len(recorded) and not wrong, f"{name}: {plot} has {len(rows)} of {len(recorded)} rows, wrong at {wrong[:3]}")
 
 
+def zeros(browser, page, name):
+    """What cannot stand on a logarithmic axis is a number all the same."""
+    browser.open(page)
+    drawn(browser)
+    _, *rows = csv.reader(io.StringIO(value(browser, "s.table('balance')")))
+    empty = sum(cell == "" for row in rows for cell in row)
+    expect(len(rows) > 10 and any("0" in row[1:] for row in rows) and not empty, f"{name}: {empty} cells of V are empty")
+
+
+def exported(browser, page, name):
+    """What leaves a page: columns say once what they are, and a strip of edges has no curve to name."""
+    browser.open(page)
+    drawn(browser)
+    head = value(browser, "s.table('plane')").split("\n")[0]
+    expect(" in " in head and not any(" in " in cell.rsplit(" in ", 1)[0] for cell in next(csv.reader([head]))[1:]), f"{name}: columns of a plane: {head}")
+    named = value(browser, "s.drawings().filter(({ svg }) => svg.includes('>Value<')).length")
+    expect(named == 0, f"{name}: {named} pictures name a curve that nobody sees")
+    leading = value(browser, "[...document.querySelectorAll('#graph-picture title')].map((e) => e.textContent).filter((name) => name.endsWith(', leads'))")
+    expect(leading == [], f"{name}: {leading}, and is heard by nobody")
+
+
 def readouts(browser, page, name):
     """What a plot says under the cursor stays within its card, whatever is pointed at."""
     for width, height in [(1024, 768), (390, 844)]:
@@ -377,6 +398,8 @@ def check(browser, folder):
     balances(browser, "sampled", [], "Lyapunov function")
     browser.open(folder.run("theorem-1"))
     balances(browser, "theorem-1", ["V", "V + ∫ dissipation", "error"], "Lyapunov balance")
+    zeros(browser, folder.run("remark-4"), "remark-4")
+    exported(browser, folder.run("unheard", masses(folder, "unheard", 'edges = [["point-1", "point-2"], ["point-2", "point-1"], ["point-2", "point-3"]]')), "nobody hears one")
     one = masses(folder, "one", "edges = []", count=1)
     alone(browser, folder.run("one", one), "one alone")
     browser.open(folder.run("gusts"))
