@@ -378,3 +378,13 @@ fn own_positions_behind_a_filter_agree_up_to_the_weight_of_routh_and_by_eq_24_be
     assert!(left("[1]", 2.9) < 1e-3 && left("[1]", 3.1) > 1e3);
     assert!(left("{ roots_per_s = [1, 2] }", 31.0) < 1e-9);
 }
+
+/// Desired dynamics have an order, be it that of a polynomial that no agent's roots make.
+#[test]
+fn regress_desired_dynamics_have_an_order() {
+    let folder = folder();
+    let said =
+        stdout(&forwardstep(&folder, &["compare", "desired-together", "first-order", "--out", "both"]).success());
+    let order = said.lines().find(|line| line.trim_start().starts_with("order ")).unwrap();
+    assert_eq!(order.split_whitespace().collect::<Vec<_>>(), ["order", "2", "1"], "{said}");
+}

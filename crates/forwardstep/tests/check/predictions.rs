@@ -123,6 +123,7 @@ fn regress_nothing_is_said_to_be_reached_in_passing() {
         fs::write(folder.path().join("own.toml"), text).unwrap();
         let said = stdout(&forwardstep(&folder, &["run", "own.toml", "--force"]));
         let passes = said.contains("only in passing");
+        assert!(!(passes && said.contains("at this rate")), "{said}");
         assert!(!(passes && said.contains("reached agreement")), "{said}");
         assert!(
             !(said.contains(" agreed: ") && !said.contains("not agreed") && !said.contains("reached agreement")),
@@ -131,4 +132,42 @@ fn regress_nothing_is_said_to_be_reached_in_passing() {
         (passed, reached) = (passed || passes, reached || said.contains("reached agreement"));
     }
     assert!(passed && reached);
+}
+
+/// Who leads is named once, with how far it is off.
+#[test]
+fn regress_a_leader_is_not_named_again_after_its_distance() {
+    let folder = folder();
+    let text = stdout(&forwardstep(&folder, &["scenarios", "pilot-ship"]).success());
+    fs::write(folder.path().join("own.toml"), text.replace("end_s = 100", "end_s = 3")).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "own.toml"]));
+    assert!(said.contains("not following: ") && said.contains("from its target, and"), "{said}");
+    assert!(!said.contains(", ("), "{said}");
+}
+
+/// Its loop comes back hardly faster than it would go, and what s does to the references is not in the bound: the run has 1.7 times as much.
+#[test]
+fn regress_the_mean_power_has_no_bound_where_samples_slow_the_loop() {
+    let folder = folder();
+    let check = |deployed: &str| {
+        let agent = |name: &str, mass: &str, at: &str, gain: &str| {
+            format!(
+                "[[agents]]\nname = \"{name}\"\nrobot.point_mass = {{ dimension = 1, mass_kg = {mass} }}\nstart.position_m = [{at}]\n\
+                 law.known.damping.gain = {gain}\n"
+            )
+        };
+        let text = format!(
+            "format = 2\ntime.end_s = 101.2\n{}{}[reference.consensus]\nroots_per_s = [0.62, 1.18, 1.17]\nexchange = \"position_velocity\"\n\
+             [network]\nedges = [{{ from = \"a\", to = \"b\", weight = 0.35, delay.constant_s = 0.5 }}, \
+             {{ from = \"b\", to = \"a\", weight = 1.02, delay.constant_s = 0.1 }}]\n[control]\n{deployed}\n\
+             velocity.filtered_difference.cut_off_hz = 1.477\n",
+            agent("a", "0.63", "1.43", "1.31"),
+            agent("b", "0.62", "1.9", "0.72")
+        );
+        fs::write(folder.path().join("own.toml"), text).unwrap();
+        stdout(&forwardstep(&folder, &["check", "own.toml"]))
+    };
+    let (slow, fast) = (check("sample_hz = 1.9767\ncomputation_delay_s = 0.1952"), check("sample_hz = 100"));
+    assert!(slow.contains("marginal: the loop as a whole decays") && !slow.contains("[tracking-power"), "{slow}");
+    assert!(fast.contains("[tracking-power"), "{fast}");
 }

@@ -453,3 +453,24 @@ fn agreement(table: &Table<'_>, predicted: &[f64]) -> Option<Vec<Agreement>> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sum of what was kept to a limit may be a last digit above it.
+    #[test]
+    fn regress_a_limit_that_is_enforced_is_reached_and_not_exceeded_by_rounding() {
+        let excess = |enforced: bool, value: f64| {
+            let place = LimitReached::nowhere(0, 0, LimitKind::Effort, enforced);
+            let clips = Some([-15.0, 15.0]);
+            beyond(&[0.0, 1.0], &[1.0, value], [-15.0, 15.0], place, clips).map(|limit| limit.excess)
+        };
+        assert_eq!(
+            (excess(true, 15.000_000_000_000_002), excess(true, -15.000_000_000_000_002)),
+            (Some(0.0), Some(0.0))
+        );
+        assert!(excess(true, 15.000_000_1) > Some(0.0) && excess(false, 15.000_000_000_000_002) > Some(0.0));
+        assert_eq!((excess(true, 14.9), excess(false, 15.0)), (None, None));
+    }
+}
