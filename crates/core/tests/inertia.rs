@@ -418,8 +418,10 @@ fn rotors_are_inertia_enough_unless_a_body_takes_more_than_they_give() {
     let negative = [0.0, 0.0, 0.0, 0.0, -0.5, 0.0, -0.5, 0.0, 0.0, -0.5];
     let first = link(None, [0.0; 3], Revolute, Z, negative);
     assert!(matches!(with_rotors(&[first], &[(0, 0.3)]), Definiteness::Not { .. }));
-    let carried = [link(None, [0.0; 3], Revolute, X, body(2.0)), link(Some(0), X, Revolute, Z, negative)];
-    assert!(matches!(with_rotors(&carried, &[(1, 0.3)]), Definiteness::Not { .. }));
+    for inertia in [negative, [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, -0.5]] {
+        let carried = [link(None, [0.0; 3], Revolute, X, body(2.0)), link(Some(0), X, Revolute, Z, inertia)];
+        assert!(matches!(with_rotors(&carried, &[(1, 0.3)]), Definiteness::Not { .. }), "{inertia:?}");
+    }
 }
 
 #[test]
