@@ -175,8 +175,10 @@ impl Theorem {
         }
     }
 
-    fn is_of_the_paper(&self) -> bool {
-        matches!(self.source(), Source::Paper | Source::Corrected(_))
+    /// Whether each of some, of which there is one at least, is the paper's.
+    fn are_of_the_paper(all: &[Theorem]) -> bool {
+        let own = |theorem: &Theorem| matches!(theorem.source(), Source::Paper | Source::Corrected(_));
+        !all.is_empty() && all.iter().all(own)
     }
 
     /// Whose it is. Slips are those of PAPER.md that touch the statement.
@@ -193,7 +195,7 @@ impl Theorem {
             | Theorem::Theorem9
             | Theorem::Remark12 => Source::Paper,
             // No stronger than the weakest of them.
-            Theorem::Targets(all) if all.iter().all(Theorem::is_of_the_paper) => Source::Paper,
+            Theorem::Targets(all) if Theorem::are_of_the_paper(all) => Source::Paper,
             Theorem::Targets(_) => Source::Derived,
             Theorem::FirstOrder => Source::Corrected("E1, E2, E3"),
             Theorem::Theorem3Velocities { .. } => Source::Corrected("E1, E2"),
@@ -253,7 +255,7 @@ impl fmt::Display for Theorem {
             Theorem::Mixture(treated) => {
                 return write!(f, "no single theorem: {} side by side", treated.join(", "));
             }
-            Theorem::Targets(all) if all.iter().all(Theorem::is_of_the_paper) => "a theorem of Section V for every agent",
+            Theorem::Targets(all) if Theorem::are_of_the_paper(all) => "a theorem of Section V for every agent",
             Theorem::Targets(all) => {
                 let all: Vec<String> = all.iter().map(Theorem::to_string).collect();
                 return write!(f, "each agent by what is said of its law: {}", all.join("; "));

@@ -213,8 +213,10 @@ pub fn practical(setup: &Setup) -> Practical {
     let load = StaticLoad::on(setup, &way).map(Finding::StaticLoad);
     let clipped = ClippedCommands::of(setup).map(Finding::ClippedCommands);
     // What may grow has no bound, and where samples slow what decays, s acts back on the references, which are taken as they are without it.
-    let slowed = |whole: &WholeLoop| whole.start.slowed_per_s().is_some();
-    let unbounded = whole.as_ref().is_some_and(|whole| whole.answer() >= PracticalAnswer::NotShown || slowed(whole));
+    let unbounded = whole.as_ref().is_some_and(|whole| {
+        let grows = whole.answer() >= PracticalAnswer::NotShown || whole.lasting_per_s().is_some();
+        grows || whole.start.slowed_per_s().is_some()
+    });
     let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !unbounded);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !unbounded).map(Finding::TrackingDisagreement);

@@ -231,9 +231,9 @@ impl Payload {
         let mut main = Series::new(Grid::new(table.t_s, &break_points, budget), table.t_s);
         if main.grid.decimated {
             notes.push(format!(
-                "For display, rows are gathered in buckets, of which the first row is kept, and two more points of each signal: its \
-                 course up to the last row, or its extremes where it turns or swings. Of {} rows {} are here as they were recorded: in planes, and in the tables and CSVs of plots. The run's tables \
-                 have every row.",
+                "For display, rows are gathered in buckets, of which the first row is kept, and two more points of each signal: its course up to \
+                 the last row, or its extremes where it turns or swings. Of {} rows {} are here as they were recorded: in planes, and in the \
+                 tables and CSVs of plots. The run's tables have every row.",
                 table.t_s.len(),
                 main.grid.exact.iter().filter(|exact| **exact).count()
             ));
