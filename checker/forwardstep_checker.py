@@ -171,8 +171,7 @@ def known(kind, kinds, what, value=None): return decided(kind in kinds, f"{what}
 
 # The same, of those that are known.
 def chosen(value, where, kinds, what):
-    found = choice(value, where)
-    return known(found[0], kinds, what, found)
+    return known((found := choice(value, where))[0], kinds, what, found)
 
 # A number for a message.
 def said(number): return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
@@ -232,16 +231,14 @@ def taylor(term, ratio):
 
 # |x| ≤ 1/2: x + s x³/3 + s² x⁵/5 + …, arctan for s = −1 and artanh for s = 1. The cut of x moves it by less than 2^-238.
 def odd_series(x, sign):
-    x = Fraction(math.floor(x * (1 << 240)), 1 << 240)
-    return taylor(x, lambda k: sign * x * x * (2 * k - 1) / (2 * k + 1))
+    return taylor(x := Fraction(math.floor(x * (1 << 240)), 1 << 240), lambda k: sign * x * x * (2 * k - 1) / (2 * k + 1))
 
 # By Machin's formula.
 PI = add(multiply((16, 16), odd_series(Fraction(1, 5), -1)), multiply((-4, -4), odd_series(Fraction(1, 239), -1)))
 
 # sin of a rational x: reduced by multiples of π, then Taylor; sin is 1-Lipschitz.
 def sine_at(x):
-    n = round(x / PI[0])
-    near = Fraction(math.floor((x - n * PI[0]) * (1 << 220)), 1 << 220)
+    near = Fraction(math.floor((x - (n := round(x / PI[0])) * PI[0]) * (1 << 220)), 1 << 220)
     room, square = abs(n) * (PI[1] - PI[0]) + Fraction(1, 1 << 219), -near * near
     value = add(taylor(near, lambda k: square / (2 * k * (2 * k + 1))), (-room, room))
     return minus(value) if n % 2 else value
@@ -260,8 +257,7 @@ def sine(a, turned):
 @functools.lru_cache(MOST_CELLS)
 def exp_at(x):
     if abs(x) > 1500: return (Fraction(2) ** 2000, INF) if x > 0 else (Fraction(0), Fraction(1, 1 << 2000))
-    halvings = max(0, math.ceil(abs(x)).bit_length() + 1)
-    small = Fraction(math.floor(x / (1 << halvings) * (1 << 240)), 1 << 240)
+    small = Fraction(math.floor(x / (1 << (halvings := math.ceil(abs(x)).bit_length() + 1)) * (1 << 240)), 1 << 240)
     # The cut of `small` moves exp by less than 2^-239.
     value = add(taylor(Fraction(1), lambda k: small / k), (Fraction(-1, 1 << 238), Fraction(1, 1 << 238)))
     for _ in range(halvings): value = multiply(value, value)
@@ -269,8 +265,7 @@ def exp_at(x):
 
 # x = m 2^k with 1/2 < m < 2; log m = 2 artanh((m − 1)/(m + 1)).
 def log_at(x):
-    k = x.numerator.bit_length() - x.denominator.bit_length()
-    m = x / Fraction(2) ** k
+    m = x / Fraction(2) ** (k := x.numerator.bit_length() - x.denominator.bit_length())
     return add(multiply((2, 2), odd_series((m - 1) / (m + 1), 1)), multiply((2 * k, 2 * k), odd_series(Fraction(1, 3), 1)))
 
 def sqrt_at(x):
@@ -599,9 +594,8 @@ def limit(tree): return enclose(tree, END)
 def joins(tree):
     ends = [attempt(limit, part) or WHOLE for part in parts_of(tree)] or [WHOLE]
     (far, zero), (far_, zero_) = ((any(map(infinite, end)), end[0] <= 0 <= end[1]) for end in (ends[0], ends[-1]))
-    breaks = {"+": far and far_, "-": far and far_, "*": far and zero_ or zero and far_, "/": zero_ or far and far_,
-              "^": zero and tree[0] == "^" and tree[2] < 0, "f": far and tree[:2] in (("f", "sin"), ("f", "cos"))}
-    return not breaks.get(tree[0], False)
+    return not {"+": far and far_, "-": far and far_, "*": far and zero_ or zero and far_, "/": zero_ or far and far_,
+                "^": zero and tree[0] == "^" and tree[2] < 0, "f": far and tree[:2] in (("f", "sin"), ("f", "cos"))}.get(tree[0], False)
 
 # Whether a formula has one limit, which may be ∞.
 @once
@@ -979,13 +973,13 @@ class Scenario:
             push = table(push, "external_wrenches", "on from_s for_s by")
             begins = not_negative(push.get("from_s", 0), "from_s")
             ends = begins + positive(push["for_s"], "for_s") if "for_s" in push else INF
-            acting = [(max(begins, first), min(ends, last), trees, hand) for first, last, trees, hand in self.courses(push.get("by"))]
+            acting = [(max(begins, first), min(ends, last), trees, kind) for first, last, trees, kind in self.courses(push.get("by"))]
             for name in listed(push.get("on"), "on"):
                 meant = [agent for agent in self.agents if name in (agent.name, agent.entry["name"])]
                 such(meant, f"there is no agent `{name}`")
                 for agent in meant: agent.pushes += [each for each in acting if each[0] < each[1]]
 
-    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, and whether it is a spring.
+    # From when until when the tables of a push have values; (0, ∞) for formulas, which follow, and what kind it is.
     def courses(self, by):
         kind, body = choice(by, "by")
         keys = ("force_n", "torque_n_m") if kind == "wrench" else ("target", "target_rad", "target_m")
@@ -993,10 +987,10 @@ class Scenario:
         for file in [table(body, "by")[key] for key in keys if key in body] if parts else [body]:
             form, rows = choice(file, "by") if not isinstance(file, list) else ("formulas", file)
             known(form, ("rows", "csv", "formulas"), "courses")
-            times, hand = [Fraction(0), INF], kind.startswith("virtual_spring")
+            times = [Fraction(0), INF]
             if form == "rows": times = [exact(t, "times_s") for t in listed(table(rows, "rows").get("times_s"), "times_s")]
             if form == "csv": times = [decimal(row.get("t_s", "")) for row in self.csv(table(rows, "csv").get("file"))]
-            yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" else [], hand
+            yield min(times), max(times), [motion_of(x, "by") for x in rows] if form == "formulas" else [], kind
 
     def used(self): return [edge for graph in self.graphs for edge in graph]
 
@@ -1015,7 +1009,7 @@ class Scenario:
 
     # What (110) works over: whether graphs take turns, or links delay.
     def over(self):
-        turns, late = not self.fixed(), any(rule_bound(edge.delay) != 0 for edge in self.used())
+        turns, late = not self.fixed(), any(rule_range(edge.delay)[1] != 0 for edge in self.used())
         return "" if turns == late else "-switching" if turns else "-late"
 
     # Whether all edges among agents lead both ways with the same weight.
@@ -1135,7 +1129,7 @@ NEVER = ("one-kind", "measured-derivative", "printed-design", "nonzero-thrust", 
 # --- is shown holds for all time where that is not plain. `WITNESSES` show that a hypothesis is violated.
 RULES = {}
 WITNESSES = ("cut", "unheard", "instant", "factor", "null-vector", "below", "limit", "loses-all", "diverges", "no-value", "out-of-reach",
-             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign", "starts-below")
+             "unmoved", "no-routh", "half-turn", "outside", "left-null", "fades", "vanishes", "changes-sign", "starts-below", "older")
 
 def rule(ids, kinds): return lambda check: RULES.update(dict.fromkeys(itertools.product(ids.split(), kinds.split()), check)) or check
 
@@ -1308,8 +1302,7 @@ Joint = collections.namedtuple("Joint", "kind moves locked axis rpy xyz")
 # The joints of a URDF from the tip to the base.
 @of_urdf
 def path(agent, root, locked):
-    joints, link = {joint.find("child").get("link"): joint for joint in root.findall("joint")}, agent.gains["end_effector"]["link"]
-    found = []
+    joints, link, found = {of.find("child").get("link"): of for of in root.findall("joint")}, agent.gains["end_effector"]["link"], []
     while link in joints:
         origin, link, angle = (joint := joints.pop(link)).find("origin"), joint.find("parent").get("link"), locked.get(joint.get("name"))
         found.append(Joint(joint.get("type"), joint.get("type") in MOVING and angle is None, exact(angle or 0, "locked"),
@@ -1451,10 +1444,11 @@ def bounds_of(agent): return agent.settings().get("estimate_bounds" if agent.law
 def in_bounds(agent):
     kind, body = chosen(bounds_of(agent) or {"within": 1}, "bounds", ("within", "given"), "bounds")
     if kind == "within": return exact(body, "within") > 0
-    plain = agent.robot == "point_mass" and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
+    own = agent.body.get("parameters", [agent.body["mass_kg"]] if agent.robot == "point_mass" else [])
+    plain = own and "parameter_variation" not in agent.entry and not {"damping", "friction"} & set(agent.body)
     decided(plain, "the parameters of this robot are not computed here")
-    (lower,), (upper,) = body["lower"], body["upper"]
-    return exact(lower, "lower") <= exact(agent.body["mass_kg"], "mass_kg") <= exact(upper, "upper")
+    low, high, own = ([exact(x, "bounds") for x in listed(each, "bounds")] for each in (body["lower"], body["upper"], own))
+    return len(low) == len(own) == len(high) and all(a <= x <= b for a, x, b in zip(low, own, high))
 
 # Lengths that are uncertain within the bounds that their estimates keep.
 def lengths_hold(scenario, agent):
@@ -1524,7 +1518,7 @@ TEXT = {(each, "text"): so for each, so in {
     "bounded-dynamics": lambda s, _: robots(s) and all(unturned(s, agent) for agent in robots(s)),
     "defined-terms": lambda s, _: all(everywhere(term, derivatives(a)) for a in s.agents if a.law in CHAIN_LAWS for term in terms(a.body)),
     # (30) has a vertex for every derivative of every agent: no order of one meets that of another.
-    "own-orders": lambda s, _: all(a.roots for a in s.agents), "no-delay": lambda s, _: all(rule_bound(e.delay) == 0 for e in s.used()),
+    "own-orders": lambda s, _: all(a.roots for a in s.agents), "no-delay": lambda s, _: all(rule_range(e.delay)[1] == 0 for e in s.used()),
     # α, β and γ stand once; a continuous design has the mass of its plant; without torques from outside h_I is that of the start.
     "shared-design": lambda s, _: s.reference == "leader", "certain-regressor": lambda s, own: all(certain(s, a) for a in own),
     "known-masses": lambda s, _: all(design_of(a) == "continuous" for a in s.agents if a.law == "thrust"),
@@ -1602,29 +1596,29 @@ def followed(claim, edge):
     if claim.id == "bounded-weights": return edge.weight if isinstance(edge.weight, str) else None
     return edge.delay[1] if edge.delay[0] == "formula_s" else None
 
-# What no value of a delay exceeds by the parameters of its rule; None where the rule does not say.
+# What every value of a delay reaches, and what none exceeds, by the parameters of its rule; 0 and None where the rule does not say.
 @once
-def rule_bound(delay):
+def rule_range(delay):
     kind, body, _ = delay
-    if kind == "constant_s": return not_negative(body, kind)
-    if kind in ("formula_s", "log", "hold_log"): return None
+    if kind == "constant_s": return (not_negative(body, kind),) * 2
+    if kind in ("formula_s", "log", "hold_log"): return 0, None
     if kind in ("piecewise_constant", "random_hold"):
         keys = ("hold_s", "value_s") if kind == "random_hold" else ("times_s", "values_s")
         times, values = ([not_negative(x, key) for x in listed(table(body, kind).get(key), key)] for key in keys)
         rises = rising([*times, exact(body.get("period_s", times[-1] + 1), "period_s")]) and times[0] == 0
         rises = 0 < times[0] <= times[-1] if kind == "random_hold" else rises
         such(rises and len(times) == len(values), f"`{keys[0]}` must rise, and have as many entries as `{keys[1]}`")
-        return max(values)
+        return min(values), max(values)
     mean, swing, low, high, latency, jitter = (not_negative(table(body, kind).get(key, 0), key) for key in (
         "mean_s", "amplitude_s", "min_s", "max_s", "latency_s", "jitter_s"))
     period_s = positive(body.get("period_s"), "period_s")
     if kind in ("sinusoid", "saw_tooth"):
         such(swing <= mean and low <= high, "a delay may be negative")
-        return mean + swing if kind == "sinusoid" else high
+        return (mean - swing, mean + swing) if kind == "sinusoid" else (low, high)
     known(kind, ("packets",), "delays")
     loss = choice(body["loss"], "loss")[1] if "loss" in body else {"probability": 0}
     lost = 0 if 0 in (loss.get("probability"), loss.get("enter")) else 1 if loss.get("leave") == 1 else loss.get("most_consecutive")
-    return None if lost is None else (not_negative(lost, "most_consecutive") + 1) * period_s + latency + jitter
+    return latency, None if lost is None else (not_negative(lost, "most_consecutive") + 1) * period_s + latency + jitter
 
 # The largest held value of a log, or age of what is heard on a link whose packets are: the newest that has arrived; before the
 # first, t.
@@ -1658,7 +1652,7 @@ def delays(claim, bound_s, enclosures, given):
     always = formulas(claim, enclosures, lambda low, high: 0 <= low and high <= most, "become negative, or exceed the bound")
     ages = {(a.text(), b.text()): worst_s for a, b, worst_s in (entry.fields("from", "to", "worst_s") for entry in given.each())}
     for edge in {(edge.source, edge.to, edge.delay[2]): edge for edge in scenario.used() if edge.delay[0] != "formula_s"}.values():
-        (kind, body, _), worst = edge.delay, rule_bound(edge.delay)
+        (kind, body, _), worst = edge.delay, rule_range(edge.delay)[1]
         if kind in ("log", "hold_log"): worst, always = logged(scenario, edge), False
         elif worst is None:
             require(given, (link := (scenario.names[edge.source], scenario.names[edge.to])) in ages, f"lacks the link of {link}")
@@ -1671,11 +1665,17 @@ def delays(claim, bound_s, enclosures, given):
 # Heard at samples, a message is up to a period older than its delay.
 @rule("messages-in-time", "ages")
 def in_time(claim, bound_s):
-    ends = [rule_bound(edge.delay) for edge in claim.scenario.used()]
+    ends = [rule_range(edge.delay)[1] for edge in claim.scenario.used()]
     decided(None not in ends, "the bound of a delay does not follow from its rule")
     late = max(ends, default=0) + 1 / positive(claim.scenario.control.get("sample_hz"), "sample_hz")
     least = exact(claim.scenario.control["message_timeout_s"], "message_timeout_s")
     require(bound_s, late <= bound_s.number() <= least, f"must lie between {said(late)} and {said(least)}")
+
+# What is heard over an edge that recurs is always older than what counts.
+@rule("messages-in-time", "older")
+def older(claim, edge):
+    youngest, most = rule_range(claim.scenario.edge_at(edge).delay)[0], exact(claim.scenario.control["message_timeout_s"], "a time-out")
+    require(edge, claim.scenario.triple(edge)[2] in claim.scenario.recurring() and youngest > most, "may carry what is in time")
 
 @rule("bounded-weights", "weights")
 def weights(claim, enclosures): return formulas(claim, enclosures, lambda low, high: 0 < low and high < INF, "vanish")
@@ -1706,8 +1706,8 @@ def far_away(claim, edge):
 @rule("bounded-delays", "loses-all")
 def loses_all(claim, edge):
     found, stays = claim.scenario.edge_at(edge), claim.scenario.triple(edge)[2] in claim.scenario.recurring()
-    rule_, loss = choice(found.delay[1].get("loss", "never"), "loss") if found.delay[0] == "packets" else (None, {})
-    require(edge, stays and (rule_, loss.get("probability"), rule_bound(found.delay)) == ("random", 1, None), "does not lose every packet")
+    how, loss = choice(found.delay[1].get("loss", "never"), "loss") if found.delay[0] == "packets" else (None, {})
+    require(edge, stays and (how, loss.get("probability"), rule_range(found.delay)[1]) == ("random", 1, None), "does not lose every packet")
 
 # v within ± a else ± a, a tanh(v/a), v/(1 + |v|/a): odd, continuous, never falling, between 0 and v, for any a > 0.
 @rule("coupling-sector", "form")
@@ -1719,11 +1719,14 @@ def left_of(bound, scenario, agents):
     return of and all(of) and 0 < bound <= min(map(min, of))[0]
 
 # Whether all pushes have ended, or come to zero by their formulas and stay there, and had bounded values until then. A hand holds at zero.
+# The square of a torque τ has a finite integral where τ and t τ are bounded: V̇ ≤ −sᵀKs + sᵀτ leaves s square-integrable.
 def ended(scenario, t):
-    gone = lambda trees, hand: trees and not hand and t >= 0 and all(enclose(tree, (t, INF)) == (0, 0) for tree in trees)
+    gone = lambda trees, kind: trees and kind[:7] != "virtual" and t >= 0 and all(enclose(tree, (t, INF)) == (0, 0) for tree in trees)
+    fades = lambda agent, trees, kind: trees and agent.law in ("adaptive", "known") and kind in ("torque_n_m", "force_n", "effort") and all(
+        finite(tree, [FOR_EVER]) and finite(resolved(times(("t",), tree), END), [END]) for tree in trees)
     kept_ = lambda trees, until: decided(all(finite(tree, [until]) for tree in trees), "a push may be unbounded", True)
-    return all((end <= t or gone(trees, hand)) and kept_(trees, (first, max(first, min(end, t))))
-               for agent in scenario.agents for first, end, trees, hand in agent.pushes)
+    return all((end <= t or gone(trees, kind) or fades(agent, trees, kind)) and kept_(trees, (first, max(first, min(end, t))))
+               for agent in scenario.agents for first, end, trees, kind in agent.pushes)
 
 # Numbers of the text, or bounds of such. Agents that agree need real roots; those that follow need roots to the left of the axis.
 NUMBERS = {"real-roots": (lambda s, x: left_of(x, s, s.agents) and not any(b for agent in s.agents for _, b in agent.roots),
@@ -1808,7 +1811,10 @@ def motions_of(claim, t=FOR_EVER):
     if claim.id == "bounded-leader":
         require(claim.proof, claim.scenario.motion is not None, "is of no motion")
         return [(paths(claim.scenario.motion), 1, 3)]
-    return [(paths(agent.target), 0 if agent.tracks else 1, needed(agent, claim.scenario.polynomial)) for agent in claim.own]
+    # A formation may travel, and a robot whose M, C and g are bounded wherever it is: so is its Y with q̇_d and q̈_d.
+    linear = not claim.scenario.polynomial or alone(claim.scenario.body)
+    level = lambda a: linear and a.law in ("adaptive", "known") and attempt(unturned, claim.scenario, a)
+    return [(paths(a.target), 0 if a.tracks and not level(a) else 1, needed(a, claim.scenario.polynomial)) for a in claim.own]
 
 # Curves through points are polynomials on finitely many pieces and constant elsewhere; derivatives of formulas are enclosed, on
 # [0, ∞) at once or on the stretch that is stated.
@@ -1864,9 +1870,8 @@ def finite(tree, stretches): return not any(infinite(end) for stretch in stretch
 def drive(claim, at=FOR_EVER):
     scenario, design = claim.scenario, claim.scenario.body.get("design")
     require(claim.proof, scenario.motion is not None, "is of no motion")
-    alpha, beta = coefficients(scenario)
+    (alpha, beta), gamma = coefficients(scenario), positive(scenario.body.get("gain"), "gain")
     factors = {**dict.fromkeys(FIRST_ORDER, (0, alpha, 1, 0)), "swarm": (0, 0, 0, 1)}.get(design, (0, alpha, beta, 1))
-    gamma = positive(scenario.body.get("gain"), "gain")
     rates = [itertools.accumulate((derivative,) * 3, lambda inner, of: of(inner), initial=resolved(tree, at)) for tree in scenario.motion]
     # What has no weight is left out: a product with zero would keep the sum from being a quotient of polynomials.
     sums = [functools.reduce(plus, (times(("number", Fraction(by)), tree) for by, tree in zip(factors, each) if by)) for each in rates]
@@ -1958,8 +1963,7 @@ def core(tree): return weighed(tree)[0][1] if len(weighed(tree)) == 1 else tree
 def changes_sign(claim, entry, from_s, to_s):
     k, start, end, trees = entry.count() - 1, from_s.number(), to_s.number(), quaternion(claim.own)
     require(entry, k in range(4), "is no entry")
-    idle = [attempt(enclose, tree, FOR_EVER) == (0, 0) or core(tree) == core(trees[k]) for tree in trees]
-    require(entry, all(idle), "is not the only one that changes")
+    require(entry, all(attempt(enclose, tree, FOR_EVER) == (0, 0) or core(tree) == core(trees[k]) for tree in trees), "is not the only one")
     require(to_s, 0 <= start < end and all(finite(tree, [(start, end)]) for tree in trees), "ends no stretch on which all have values")
     (a, b), (c, d) = (enclose(trees[k], (t, t)) for t in (start, end))
     require(entry, b < 0 < c or d < 0 < a, "has one sign")
@@ -2114,7 +2118,7 @@ def main(arguments=None):
         found = check(certificate, scenario, options.scenario.resolve().parent, not options.ignore_digests)
     except Meaningless as error: found = [("certificate", [], "", REJECTED, str(error), "")]
     whole = max((entry[3] for entry in found), key=(ACCEPTED, UNCHECKED, REJECTED).index, default=UNCHECKED)
-    violated = [entry[0] for entry in found if entry[2:4] == (VIOLATED, ACCEPTED)]
+    violated = list(dict.fromkeys(entry[0] for entry in found if entry[2:4] == (VIOLATED, ACCEPTED)))
     for each, agents, answer, result, words, place in () if options.json else found:
         about = (f" of {', '.join(agents)}" if agents else "") + (f", {answer}" if answer else "")
         print(f"{result}: {each}{about}: {words}{f' ({place})' if place else ''}")

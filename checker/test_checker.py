@@ -1196,6 +1196,41 @@ class FalseProofs(unittest.TestCase):
         late = lambda entry: entry["proof"].update(value="20.3")  # noqa: E731
         self.accepted(name, each, late, (f"[{old}, 1, 0]", '["max(0, 8 - t)", 0, 0]'), ("for_s = 6\n", ""))
 
+    def test_a_robot_may_travel_where_its_dynamics_are_bounded_wherever_it_is(self):
+        name, each = "through-waypoints", "bounded-target"
+        text = place_of(name).read_text()
+        points = text[text.index("[agents.target.points]"):text.index("[reference.tracking]")]
+        by = lambda path: (points, f'target.formulas = ["{path}", "0", "0", "0", "0", "0"]\n')  # noqa: E731
+        holds = lambda entry: entry.update(answer="holds", proof={"kind": "derivatives", "order": 2, "stretch": {"range": "for-ever"}})  # noqa: E731
+        grows = lambda order: lambda entry: entry.update(  # noqa: E731
+            answer="violated", proof={"kind": "diverges", "motion": 1, "axis": 1, "order": order})
+        self.accepted(name, each, holds, by("t + sin(t)"))
+        self.rejected(name, each, "no derivative that a law uses", grows(0), by("t + sin(t)"))
+        self.rejected(name, each, "does not bound derivative 1", holds, by("t^2"))
+        self.accepted(name, each, grows(1), by("t^2"))
+        # The proof of a law that measures no velocity asks for more.
+        self.rejected("without-velocity", each, "does not bound derivative 0", lambda entry: None, ('["sin(t)"', '["t + sin(t)"'))
+
+    def test_a_torque_whose_square_has_an_integral_need_not_end(self):
+        certificate = json.loads((self.folder / "theorem-2.json").read_text())
+        certificate["hypotheses"].append({"id": "pushes-end", "agents": [], "answer": "holds", "proof": {"kind": "number", "value": 0}})
+
+        def judged(torque, by="torque_n_m", law="adaptive"):
+            push = f'[[external_wrenches]]\non = ["arm-1"]\nby.{by} = ["{torque}", 0]\n[network]'
+            text = place_of("theorem-2").read_text().replace("[network]", push)
+            if law == "known": text = text.replace("[law.adaptive]", "[law.known]").replace("adaptation_gain = 10", "")  # noqa: E701
+            found = checker.check(json.dumps(certificate), text, SCENARIOS, digests=False)
+            return next(one[3] for one in found if one[0] == "pushes-end")
+
+        for torque in ("exp(-t)", "3*exp(-0.05*t)*sin(t)", "2/(1 + t)", "sin(t)/(1 + t^2)"):
+            for law in ("adaptive", "known"):
+                self.assertEqual(judged(torque, law=law), checker.ACCEPTED, torque)
+        for torque in ("sin(t)", "1/sqrt(1 + t)", "t/(1 + t)", "1/(t - 30)^2"):
+            self.assertNotEqual(judged(torque), checker.ACCEPTED, torque)
+        # A force on a link acts by a factor that may depend on where the robot is, and a hand holds.
+        self.assertEqual(judged("exp(-t)", "wrench.force_n"), checker.REJECTED)
+        self.assertEqual(judged("exp(-t)", "virtual_spring_on_axes.target_rad"), checker.REJECTED)
+
     def test_delays_are_constant_however_they_are_written(self):
         name, each, constant = "first-order", "common-first-root", "delay.constant_s = 0.3"
         kind = lambda entry: entry.update(proof={"kind": "constant"})  # noqa: E731
@@ -1793,8 +1828,8 @@ class FalseProofs(unittest.TestCase):
     def test_pushes_by_formulas(self):
         pushed = ("[network]", '[[external_wrenches]]\non = ["arm-1"]\nby.torque = ["max(0, 1 - t)", 0]\n[network]')
         scenario = checker.Scenario(place_of("theorem-2").read_text().replace(*pushed), Path("."))
-        (begin, end, trees, hand), (both, _) = scenario.agents[0].pushes[0], (checker.FOR_EVER, 0)
-        self.assertEqual((begin, end, len(trees), hand), (0, checker.INF, 2, False))
+        (begin, end, trees, kind), (both, _) = scenario.agents[0].pushes[0], (checker.FOR_EVER, 0)
+        self.assertEqual((begin, end, len(trees), kind), (0, checker.INF, 2, "torque"))
         one = checker.Fraction(1)
         self.assertTrue(all(checker.enclose(tree, (one, checker.INF)) == (0, 0) for tree in trees))
         self.assertNotEqual(checker.enclose(trees[0], (one * 9 / 10, checker.INF)), (0, 0))
@@ -2001,6 +2036,32 @@ class FalseProofs(unittest.TestCase):
             sampled_ = text.replace("[network]", f"[control]\nsample_hz = 100\nmessage_timeout_s = {timeout}\n[network]")
             found = checker.check(json.dumps(own), sampled_, SCENARIOS, digests=False)
             self.assertIn(("messages-in-time", outcome), [(one[0], one[3]) for one in found], found)
+
+    def test_links_over_which_everything_is_too_old(self):
+        text = place_of("theorem-2").read_text()
+        certificate = json.loads((self.folder / "theorem-2.json").read_text())
+        certificate["hypotheses"].append({"id": "continuous-time", "agents": [], "answer": "not covered by the paper"})
+        sinusoid = "sinusoid = { mean_s = 0.25, amplitude_s = 0.25, period_s = 3.0 }"
+        self.assertIn(sinusoid, text)
+
+        def judged(delay, timeout, of=1, switching="repeat"):
+            edge = ["arm-1", "arm-2", of]
+            own = copy.deepcopy(certificate)
+            own["hypotheses"].append({"id": "messages-in-time", "agents": [], "answer": "violated", "proof": {"kind": "older", "edge": edge}})
+            sampled_ = f"[control]\nsample_hz = 100\nmessage_timeout_s = {timeout}\n[network]\nswitching = \"{switching}\""
+            found = checker.check(json.dumps(own), text.replace(sinusoid, delay).replace("[network]", sampled_), SCENARIOS, digests=False)
+            return next(one[3] for one in found if one[0] == "messages-in-time")
+
+        link = "packets = { seed = 1, period_s = 0.1, latency_s = 0.3, jitter_s = 0.2 }"
+        jumps = "piecewise_constant = { times_s = [0, 1], values_s = [0.3, 0.5], period_s = 2 }"
+        for delay in ("constant_s = 0.3", sinusoid.replace("0.25, a", "0.55, a"), link, jumps, "saw_tooth = { min_s = 0.3, max_s = 0.5, period_s = 1 }",
+                      "random_hold = { seed = 3, value_s = [0.3, 0.5], hold_s = [0.1, 0.8] }"):
+            for timeout, outcome in (("0.29", checker.ACCEPTED), ("0.3", checker.REJECTED), ("0.31", checker.REJECTED)):
+                self.assertEqual(judged(delay, timeout), outcome, (delay, timeout))
+        # No edge of this phase, one that is gone, and what no rule tells.
+        self.assertEqual(judged("constant_s = 0.3", "0.2", 2), checker.REJECTED)
+        self.assertEqual(judged("constant_s = 0.3", "0.2", 1, "once"), checker.REJECTED)
+        self.assertEqual(judged('formula_s = "0.3 + 0.01*sin(t)"', "0.2"), checker.REJECTED)
 
     def test_there_is_such_a_robot_whatever_is_asked_of_it(self):
         """Theorem 7 takes M = Mᵀ ≻ 0 for granted, (a8) a mass, and the others what no hypothesis of theirs names."""

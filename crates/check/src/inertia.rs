@@ -139,6 +139,11 @@ pub(crate) fn is_known(agent: &AgentSetup) -> bool {
     agent.robot.kind.lagrangian().is_some_and(|robot| robot.swung_axes().is_some())
 }
 
+/// Whether M, C and g of such a robot are bounded for all q.
+pub(crate) fn bounded_anywhere(agent: &AgentSetup) -> bool {
+    is_known(agent) && swung(agent).is_empty()
+}
+
 fn swung(agent: &AgentSetup) -> Vec<usize> {
     agent.robot.kind.lagrangian().and_then(|robot| robot.swung_axes()).unwrap_or_default()
 }

@@ -4,14 +4,17 @@
 //! jitter makes them, but packets arrive a finite number of times in a bounded time, and how short a piece is plays no part
 //! where the theorems use the delay, under integrals. What can fail is the bound.
 
-use forwardstep_core::expression::Interval;
+use forwardstep_core::expression::{Interval, Number};
 use forwardstep_sim::Setup;
 use forwardstep_sim::delay::{Basis, Delay, Known, Unknown};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::{Edge, Weight};
 
-use crate::certificate::refutes;
-use crate::hypothesis::{Hypothesis, Id, LinkEvidence, WeightFault};
+use crate::certificate::{largest, refutes};
+use crate::hypothesis::{Hypothesis, Id, LinkEvidence, TooOld, WeightFault};
+
+/// What rounding adds to a sum, as a part of it.
+const ROUNDING: f64 = 1e-12;
 
 /// The delays of links that are used.
 fn delays(setup: &Setup) -> impl Iterator<Item = &Delay> {
@@ -88,13 +91,57 @@ fn weaker(a: Basis, b: Basis) -> Basis {
 pub(crate) fn messages_in_time(setup: &Setup) -> Option<Hypothesis> {
     let control = setup.control.as_ref()?;
     let timeout_s = control.failures.message_timeout_s?;
+    let too_old = never_in_time(setup).map(|(_, edge)| {
+        let [from, to] = [edge.from, edge.to].map(|agent| setup.agents[agent].name.clone());
+        TooOld { from, to, least_s: youngest_s(setup, edge) }
+    });
     let known: Vec<_> = known_each(setup).collect();
     let bounded = known.iter().all(|known| known.unknown.is_none());
-    // Heard at samples, a message is up to a period older than its delay.
+    // Heard at samples, a message is up to a period older than its delay. Sums of decimals are compared as such: 0.1 + 0.05 does not exceed 0.15.
     let bound_s = known.iter().map(|known| known.bound_s).fold(0.0, f64::max) + 1.0 / control.sample_hz;
+    let exact_s = delays(setup).map(largest).zip(&known).map(|(by_rule, known)| match known.basis {
+        Basis::Rule => by_rule,
+        Basis::Enclosure | Basis::Numbers | Basis::Declared => Number::written(known.bound_s),
+    });
+    let in_time = exact_s
+        .max()
+        .is_none_or(|late_s| late_s + Number::written(control.sample_hz).recip() <= Number::written(timeout_s));
     let basis = known.iter().map(|known| known.basis).fold(Basis::Rule, weaker);
-    let evidence = LinkEvidence::Ages { bound_s: bounded.then_some(bound_s), timeout_s, basis };
+    let evidence = LinkEvidence::Ages {
+        bound_s: bounded.then_some(bound_s),
+        in_time: bounded && in_time,
+        timeout_s,
+        basis,
+        too_old,
+    };
     Some(Hypothesis::new(Id::MessagesInTime, evidence))
+}
+
+/// An edge that is there again and again, with its phase, over which all that is heard is older than the time-out.
+pub(crate) fn never_in_time(setup: &Setup) -> Option<(usize, &Edge)> {
+    let timeout_s = setup.control.as_ref()?.failures.message_timeout_s?;
+    let schedule = &setup.network.schedule;
+    let late = |edge: &&Edge| youngest_s(setup, edge) > timeout_s;
+    let first = schedule.graphs.len() - schedule.recurring_graphs().len();
+    let phases = schedule.recurring_graphs().iter().enumerate();
+    phases.filter_map(|(phase, graph)| Some((first + phase, graph.iter().find(late)?))).next()
+}
+
+/// What is heard over an edge is never younger, by the rule of its delay, s. Zero where no rule says so.
+fn youngest_s(setup: &Setup, edge: &Edge) -> f64 {
+    let Some(delay) = setup.network.delays.get(edge.delay) else { return 0.0 };
+    match delay.packets() {
+        Some(trace) => trace.link().map_or(0.0, |link| link.latency_s),
+        None if delay.known().basis == Basis::Rule && delay.known().until_s.is_none() => delay.min_s(),
+        None => 0.0,
+    }
+}
+
+/// Whether some message of the run may become too old to count, so that the network is not the one that is stated.
+pub(crate) fn may_time_out(setup: &Setup) -> bool {
+    let Some(control) = &setup.control else { return false };
+    let oldest_s = setup.network.max_delay_s() + 1.0 / control.sample_hz;
+    control.failures.message_timeout_s.is_some_and(|timeout_s| timeout_s < (1.0 - ROUNDING) * oldest_s)
 }
 
 /// Whether some link that is used is not known to be without delay from the way it is stated.

@@ -2,9 +2,10 @@
 
 use forwardstep_core::expression::Interval;
 use forwardstep_core::robot::{Friction, SMOOTHING_LOSS};
-use forwardstep_sim::push::{Course, Function, Push};
+use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
+use crate::certificate::fades;
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
 use crate::kinds::is_lagrangian;
 use crate::links::messages_in_time;
@@ -29,16 +30,36 @@ fn pushes_end(setup: &Setup) -> Option<Hypothesis> {
     if all.is_empty() {
         return None;
     }
-    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
     let evidence = LoopEvidence::Pushes {
         pushed: all,
-        torques_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && is_lagrangian(agent)),
+        fading: pushed(is_fading),
+        torques_for_ever: pushed(|agent, push| {
+            endless(push) && !push.is_spring() && is_lagrangian(agent) && !is_fading(agent, push)
+        }),
         others_for_ever: pushed(|agent, push| endless(push) && !push.is_spring() && !is_lagrangian(agent)),
         springs_for_ever: pushed(|_, push| endless(push) && push.is_spring()),
         unbounded: pushed(|_, push| !endless(push) && !is_bounded(push)),
-        last_end_s: pushes.map(ends_s).fold(0.0, f64::max),
+        last_end_s: last_end_s(setup),
     };
     Some(Hypothesis::new(Id::PushesEnd, evidence))
+}
+
+/// When the last push ends of those that do not fade, s.
+pub(crate) fn last_end_s(setup: &Setup) -> f64 {
+    let all = setup.agents.iter().flat_map(|agent| agent.pushes.iter().map(move |push| (agent, push)));
+    let ending = all.filter(|(agent, push)| acts(push) && !is_fading(agent, push));
+    ending.map(|(_, push)| ends_s(push)).fold(0.0, f64::max)
+}
+
+/// Whether a torque on the axes of a robot under (6)–(7) never ends, and its square has a finite integral: V̇ ≤ −sᵀKs + sᵀτ then leaves V bounded
+/// and s square-integrable. A force on a link comes with a factor that may depend on where the robot is.
+fn is_fading(agent: &AgentSetup, push: &Push) -> bool {
+    let Effect::Torque(Course::Each(functions)) = &push.effect else { return false };
+    let each = |function: &Function| match function {
+        Function::Constant(value) => *value == 0.0,
+        Function::Formula(formula) => fades(formula),
+    };
+    endless(push) && is_lagrangian(agent) && functions.iter().all(each)
 }
 
 /// Whether it acts at some time.

@@ -376,7 +376,7 @@ fn robots_that_track_fall_under_no_theorem_of_the_paper_and_all_that_their_argum
         });
         assert_eq!(asked, Some(derivatives));
     }
-    // A parabola is not bounded for ever.
+    // Of a parabola not even the velocity is bounded for ever.
     let setup = tracking(arm(0, &[2.0]), vec![power_of_time(0.01, 2.0), rest_at(0.0)]);
     assert_eq!(check(&setup).worst(), Answer::Violated);
 }

@@ -179,13 +179,13 @@ fn thm8_only_a_sign_that_is_solved_for_is_the_set_valued_one() {
     let (_, because) = answer(&check(&setup(FollowingDesign::Continuous, wave(), 3.0)), "set-valued");
     assert_eq!(
         because,
-        "a value of it is solved for every 0.001 s; held in between, it leaves an error qᵢ − q₀ of about 0.002237 in units of the axes"
+        "a value of it is solved for every 0.001 s; held in between, it leaves an error qᵢ − q₀ of up to about 0.002237 in units of the axes"
     );
     // What is left passes through 1/(p + α): half as much for α = 2, where |ddq₀ + 2 dq₀| ≤ 2√2.
     let mut stiff = setup(FollowingDesign::Continuous, wave(), 3.0);
     assert!(stiff.change_reference(|following: &mut Following| following.alpha = 2.0));
     let (_, because) = answer(&check(&stiff), "set-valued");
-    assert!(because.ends_with("it leaves an error qᵢ − q₀ of about 0.001415 in units of the axes"), "{because}");
+    assert!(because.ends_with("it leaves an error qᵢ − q₀ of up to about 0.001415 in units of the axes"), "{because}");
     // Controllers that sample solve for it as often as they do, and the second in the row hears the first a sample later.
     let (_, because) = answer(&check(&setup(FollowingDesign::Continuous, wave(), 3.0).sampled(400.0)), "set-valued");
     assert!(

@@ -375,6 +375,30 @@ fn thm_verdicts_on_pushes_are_given_for_every_kind_that_tracks_or_agrees() {
     }
 }
 
+/// V̇ ≤ −sᵀKs + sᵀτ: s is square-integrable where τ is, whether τ ends or not.
+#[test]
+fn prop_a_torque_whose_square_has_an_integral_need_not_end() {
+    let t = || Expression::variable(0);
+    let verdict = |by: fn(Course) -> Effect, torque: Expression| {
+        let mut setup = ring(vec![mass(0, &[1.0, 2.0]), mass(1, &[1.0, 2.0])], Exchange::PositionVelocity, 20.0);
+        let course = Course::Each(vec![Function::Formula(torque)]);
+        setup.agents[1].pushes = vec![Push { effect: by(course), from_s: 0.0, until_s: f64::INFINITY }];
+        said(&setup, Id::PushesEnd).unwrap()
+    };
+    let over = |by: Expression| (by + 1.0).power(-1.0);
+    for fading in
+        [(-t()).exp_of(), (t() * -0.05).exp_of() * t().sin_of(), over(t()) * 2.0, over(t().power(2.0)) * t().sin_of()]
+    {
+        let (answer, because) = verdict(Effect::Torque, fading.clone());
+        assert_eq!(answer, Answer::Holds, "{fading:?}: {because}");
+        assert!(because.contains("fades at least like 1/t"), "{because}");
+    }
+    // Neither ∫ sin² is finite nor ∫ 1/t, and what has no value at some time is no torque.
+    for stays in [t().sin_of(), over(t()).power(0.5), over(t()) * t(), (t() - 30.0).power(-2.0)] {
+        assert_eq!(verdict(Effect::Torque, stays.clone()).0, Answer::NotCovered, "{stays:?}");
+    }
+}
+
 #[test]
 fn thm7_a_torque_from_outside_spoils_the_momentum_that_the_law_was_told() {
     let mut setup = tracking(spacecraft(), [0.0, 0.0, 0.0, 1.0].map(rest_at).to_vec());

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::common::kinds::{alone, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};
-use crate::common::{arm, noise, setup};
+use crate::common::kinds::{alone, blind_mass, change_tip, formula, planar_tip, rest_at, tracking, tree_tip};
+use crate::common::{About, answer, arm, noise, setup};
 use forwardstep_check::hypothesis::{InertiaUnit, ReachSide, RobotEvidence};
 use forwardstep_check::{Answer, Evidence, Hypothesis, Id, Rigour, SamplingMargin, check, fastest_damping, practical};
 use forwardstep_core::Gain;
@@ -342,4 +342,23 @@ fn sampling_is_said_to_be_stable_at_every_posture_where_the_bound_shows_it() {
         control.sample_hz *= 0.99 * anywhere;
     }
     assert!(rates(&setup).1 > 1.0 && !because(&setup).contains("at any q"), "{}", because(&setup));
+}
+
+/// Where M, C and g are bounded for all q, a joint may turn for ever.
+#[test]
+fn a_robot_may_travel_where_its_dynamics_are_bounded_wherever_it_is() {
+    use JointKind::{Prismatic, Revolute};
+    let travels = || formula(Expression::variable(0) + Expression::variable(0).sin_of());
+    let setup = tracking(arm(0, &[2.0]), vec![travels(), rest_at(0.0)]);
+    let report = check(&setup);
+    assert_eq!(report.worst(), Answer::Holds);
+    let bounded = report.hypotheses.iter().find(|hypothesis| hypothesis.id == Id::BoundedTarget).unwrap();
+    assert_eq!(
+        bounded.requires(),
+        "the derivatives of the target of arm-1, which may travel, up to the second are bounded"
+    );
+    // A slide that a joint turns has a lever that grows with its travel, and a law without velocities another proof.
+    let swung = tree(&[(Revolute, Z, body(1.0)), (Prismatic, X, body(1.0))]);
+    assert_eq!(answer(&tracking(swung, vec![rest_at(0.0), travels()]), About::Target), Answer::Violated);
+    assert_eq!(answer(&tracking(blind_mass(5.0, 0.3), vec![travels()]), About::Target), Answer::Violated);
 }

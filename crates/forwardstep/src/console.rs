@@ -76,6 +76,16 @@ impl Console {
         }));
     }
 
+    /// Writes the text of a file: as it is for a pipe or a file, and without what a terminal would obey for a terminal.
+    pub(crate) fn file(&mut self, text: &str) {
+        if !io::stdout().is_terminal() {
+            return self.verbatim(text);
+        }
+        for line in text.lines() {
+            self.whole(line);
+        }
+    }
+
     /// Writes the text of a file as it is, which a reader will ask for again.
     pub(crate) fn verbatim(&mut self, text: impl fmt::Display) {
         if !self.muted

@@ -193,10 +193,14 @@ fn mistakes_are_told_before_anything_is_run_and_nothing_is_left() {
     fs::copy(here.path().join("run/scenario.toml"), here.path().join("forged/scenario.toml")).unwrap();
     write(&here, "forged/summary.json", "{\"format\": 2, \"rows\": \"<script>\"}");
     write(&here, "wrong.toml", &POINTS.replace("2.0, 3.0", "2.0, -3.0"));
+    // A run in a folder that is called like a shipped scenario.
+    fs::create_dir(here.path().join("first-order")).unwrap();
+    fs::copy(here.path().join("run/summary.json"), here.path().join("first-order/summary.json")).unwrap();
     let before = names(here.path());
     for (arguments, told) in [
         (&["points.toml", "nothing-like-it"][..], "nothing-like-it"),
         (&["points.toml", "no/such/file.toml"], "no/such/file.toml"),
+        (&["first-order", "nothing-like-it"], "the run in the folder of that name is `./first-order`"),
         (&["points.toml", "empty"], "holds no whole run"),
         (&["points.toml", "forged"], "summary.json"),
         (&["points.toml", "wrong.toml"], "roots_per_s"),

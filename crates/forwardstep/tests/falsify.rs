@@ -15,13 +15,14 @@ fn count(said: &str, words: &str) -> u64 {
 #[test]
 fn nothing_is_refuted_in_a_minute() {
     let folder = folder();
-    // A quarter of one, unless there is time.
-    let [seconds, least] = if is_long() { ["60", "10"] } else { ["15", "2"] };
-    let arguments = ["falsify", "--seconds", seconds, "--cases", "2000", "--seed", "7"];
-    let said = stdout(&forwardstep(&folder, &arguments).code(0));
-    let least: u64 = least.parse().unwrap();
+    // A few cases, which are the same on every machine, unless there is time.
+    let (arguments, least): (&[&str], u64) = match is_long() {
+        true => (&["falsify", "--seconds", "60", "--cases", "2000", "--seed", "7"], 10),
+        false => (&["falsify", "--cases", "50", "--seed", "1"], 2),
+    };
+    let said = stdout(&forwardstep(&folder, arguments).code(0));
     assert_eq!(count(&said, "refuted"), 0, "{said}");
-    // However slow the machine, some of each kind were judged.
+    // Some of each kind were judged.
     assert!(count(&said, "whose spread never grew") > least, "{said}");
     assert!(count(&said, "whose spread shrank at least by what is guaranteed") > least / 2, "{said}");
     assert!(count(&said, "whose error falls") > least, "{said}");

@@ -302,7 +302,7 @@ fn regress_where_nothing_can_be_written_is_said_before_gains_are_tried() {
     fs::write(folder.path().join("file"), "").unwrap();
     for (file, said) in [
         (OsStr::from_bytes(b"f\xff.toml"), "not UTF-8"),
-        (OsStr::new("file/own.toml"), "there is no folder `file`"),
+        (OsStr::new("file/own.toml"), "`file` exists and is no folder"),
         (OsStr::new("none/own.toml"), "there is no folder `none`"),
     ] {
         let told = new(file);

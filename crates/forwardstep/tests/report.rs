@@ -350,3 +350,29 @@ fn a_page_speaks_of_a_reference_velocity_where_there_is_one() {
         assert!(page.contains("data-plot=\"velocity\""), "{scenario}");
     }
 }
+
+/// What a radio carries is what it sends, however often controllers sample.
+#[test]
+fn regress_traffic_is_that_of_the_packets() {
+    let folder = folder();
+    let sampled = ARMS.replace("[network]", "[control]\nsample_hz = 100\n[network]").replace("end_s = 3", "end_s = 1");
+    let saw_tooth = "saw_tooth = { min_s = 0.1, max_s = 0.2, period_s = 0.7 }";
+    let radio = "packets = { period_s = 0.05, latency_s = 0.01, seed = 1 }";
+    let slower = radio.replace("0.05", "0.1");
+    let of_link = format!("[{{ from = \"arm-1\", to = \"arm-2\", delay.{slower} }}, ");
+    for (text, told) in [
+        (ARMS.to_owned(), "32 bytes per message; in continuous time there is no rate"),
+        (sampled.clone(), "3200 bytes/s: 32 bytes at every sample"),
+        (sampled.replace(saw_tooth, radio), "640 bytes/s: 32 bytes every 0.05 s"),
+        (ARMS.replace(saw_tooth, radio), "640 bytes/s: 32 bytes every 0.05 s"),
+        (
+            sampled.replace(saw_tooth, radio).replace("[[\"arm-1\", \"arm-2\"], ", &of_link),
+            "32 bytes per message; how often one is sent differs from link to link",
+        ),
+    ] {
+        fs::write(folder.path().join("two.toml"), &text).unwrap();
+        forwardstep(&folder, &["run", "two.toml", "--out", "run", "--force"]).success();
+        let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+        assert!(page.contains(told), "{told}: {text}");
+    }
+}

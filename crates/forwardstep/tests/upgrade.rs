@@ -182,7 +182,9 @@ fn files_are_converted_whole_or_not_at_all() {
     assert!(fs::read_to_string(path("both.toml")).unwrap().contains("ledger = true"));
     assert_eq!(fs::read_to_string(path("one.toml")).unwrap(), new);
     let several = stderr(&forwardstep(&folder, &["upgrade", "one.toml", "two.toml", "--out", "three.toml"]).code(2));
-    assert!(several.contains("`--out` names one file"), "{several}");
+    assert!(several.contains("`--out` is for one file"), "{several}");
+    let several = stderr(&forwardstep(&folder, &["upgrade", "one.toml", "two.toml", "--stdout"]).code(2));
+    assert!(several.contains("`--stdout` is for one file"), "{several}");
     assert_eq!(names(folder.path()), ["both.toml", "broken.toml", "one.toml", "two.toml"]);
 }
 

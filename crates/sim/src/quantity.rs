@@ -225,6 +225,7 @@ impl fmt::Display for QuantityError {
             Requirement::Throughout { must, within, seen_s, until_s } => {
                 let [value, low, high] = [self.value, within[0], within[1]].map(rounded).map(number);
                 match seen_s.map(rounded).map(number) {
+                    Some(t) if self.value == 0.0 => write!(f, "{name} is 0, or rounds to it, at t = {t} s, but {must}"),
                     Some(t) if self.value.is_finite() => write!(f, "{name} is {value} at t = {t} s, but {must}"),
                     Some(t) => write!(f, "{name} has no finite value at t = {t} s"),
                     None => write!(

@@ -17,6 +17,7 @@ use super::limit::{Limit, limit, refutes};
 use super::producers::Claim;
 use super::proof::{Enclosure, GivenAge, Proof};
 use crate::Answer;
+use crate::links::never_in_time;
 
 /// Times at which a formula is looked at for a witness, and how many of them there are in a second.
 const LOOKS: u32 = 100_000;
@@ -118,7 +119,7 @@ fn is_drawn(delay: &Delay) -> bool {
 }
 
 /// What a delay does not exceed, in exact numbers where its rule adds some.
-fn largest(delay: &Delay) -> BigRational {
+pub(crate) fn largest(delay: &Delay) -> BigRational {
     let sum = |numbers: &[f64]| numbers.iter().copied().map(Number::written).sum();
     if let Some(Sinusoid { mean_s, amplitude_s, .. }) = delay.downcast() {
         return sum(&[*mean_s, *amplitude_s]);
@@ -150,6 +151,9 @@ fn by_rule(link: &PacketLink) -> BigRational {
 }
 
 pub(super) fn in_time(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
+    if let Some((phase, edge)) = never_in_time(setup) {
+        return Some(Proof::Older((edge.from, edge.to, phase)));
+    }
     let timeout_s = setup.control.as_ref()?.failures.message_timeout_s?;
     (claim.answer == Answer::Holds).then(|| Proof::Ages(Number::written(timeout_s)))
 }

@@ -11,6 +11,7 @@ mod courses;
 mod delays;
 mod enclosure;
 mod exact;
+mod fading;
 mod gains;
 mod late;
 mod limit;
@@ -29,7 +30,9 @@ mod zeros;
 use forwardstep_sim::Setup;
 use num_rational::BigRational;
 
+pub(crate) use delays::largest;
 pub use exact::decimal;
+pub(crate) use fading::fades;
 pub(crate) use limit::refutes;
 pub(crate) use motions::{at_start, closer_drive_bound};
 pub use proof::{DrawnPhase, Enclosure, GivenAge, Matrix, Proof, Range, TreeWindow};

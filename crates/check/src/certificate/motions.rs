@@ -20,6 +20,7 @@ use super::zeros::vanishing;
 use crate::kinds::start_attitude::scalar_squared;
 use crate::laws::kind_of;
 use crate::reach::{leaves_s, reach};
+use crate::theorems::lowest_asked;
 use crate::{Answer, Id};
 
 /// Times of the run at which a leader is looked at for a witness, and doublings of the run after it.
@@ -40,7 +41,7 @@ pub(super) fn bounded(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
         for index in claim.agents {
             let agent = setup.agents.get(*index)?;
             order = order.max(desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent)));
-            motions.push((agent.target.as_ref()?, usize::from(!setup.tracks(*index))));
+            motions.push((agent.target.as_ref()?, lowest_asked(setup, *index)));
         }
     }
     if claim.answer == Answer::Violated {

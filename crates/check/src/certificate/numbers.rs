@@ -11,7 +11,7 @@ use super::proof::Proof;
 use crate::Answer;
 use crate::kinds::chain::{undefined_state, unmoved};
 use crate::kinds::matrix_factor::null_vector;
-use crate::surroundings::{acts, ends_s};
+use crate::surroundings::last_end_s;
 use crate::theorems::certainly_slowest_per_s;
 
 /// A number that proves what holds.
@@ -43,8 +43,7 @@ pub(super) fn manipulability(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> 
 }
 
 pub(super) fn pushes_end(setup: &Setup, claim: &Claim<'_>) -> Option<Proof> {
-    let pushes = setup.agents.iter().flat_map(|agent| &agent.pushes).filter(|push| acts(push));
-    let last_s = pushes.map(ends_s).reduce(f64::max)?;
+    let last_s = last_end_s(setup);
     // The end is a sum of two numbers as they are written, rounded once.
     let rounded_s = if last_s.fract() == 0.0 { last_s } else { last_s.next_up() };
     number(claim, last_s.is_finite().then(|| Number::written(rounded_s)))

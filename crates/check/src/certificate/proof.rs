@@ -124,6 +124,8 @@ pub enum Proof {
     Limit((usize, usize, usize)),
     /// Witness: this edge loses every packet.
     LosesAll((usize, usize, usize)),
+    /// Witness: all that is heard over this edge is older than it may be.
+    Older((usize, usize, usize)),
     /// Witness: a derivative of a motion goes beyond every bound as t → ∞.
     Diverges {
         /// Whose motion, among the agents that the claim is about; zero for a leader.

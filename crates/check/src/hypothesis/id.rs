@@ -129,7 +129,7 @@ table! {
         "K and Γ are symmetric positive definite",
         "a K or a Γ with an eigenvalue that is not positive: V then need not fall, and s need not vanish";
     PushesEnd, "pushes-end", "own derivation", Source::Derived,
-        "external torques, forces and disturbances end, so that s is square-integrable all the same",
+        "external torques, forces and disturbances end or fade, so that s is square-integrable all the same",
         "a push that never ends: s then stays, and agents as far apart as the push holds them";
     AppliedTorque, "applied-torque", "(6)", Source::Paper,
         "the torque that the law asks for is applied",

@@ -13,7 +13,7 @@ use forwardstep_sim::leader::FollowingDesign;
 pub use evidence::{
     Bounded, Evidence, FactorEverywhere, FollowingEvidence, GraphEvidence, InertiaUnit, Inexact, KindEvidence, Limited,
     LinkEvidence, LoopEvidence, MotionEvidence, MotionExtent, ReachSide, ReferenceEvidence, RobotEvidence, Term,
-    TriedRun, WeightFault,
+    TooOld, TriedRun, WeightFault,
 };
 pub use id::Id;
 pub(crate) use words::{counterexample, numbers};
@@ -46,6 +46,8 @@ pub enum Subject {
         agents: Vec<Named>,
         /// Up to which derivative, four at most.
         derivatives: usize,
+        /// Whether they may travel for ever, so that they themselves do not count.
+        travels: bool,
     },
     /// The derivatives of the offsets of some agents. A formation may travel: its offsets themselves do not count.
     Offsets {

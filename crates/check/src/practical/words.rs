@@ -151,7 +151,7 @@ fn agreement(bound: &AgreementBound) -> String {
         "; it does not move what all agree on for ever".to_owned()
     } else {
         format!(
-            "; everybody together moves by at most {} RMS s and {} max|s|",
+            "; everybody together moves at a speed of at most {} RMS s and {} max|s|",
             rounded_up(drift_rms),
             rounded_up(drift_peak)
         )
@@ -200,6 +200,7 @@ fn axes(AgreementBound { axes, expected, sampled, .. }: &AgreementBound) -> Stri
 fn worst_of(agents: usize, all: usize) -> String {
     match (agents, all) {
         (1, 1) => String::new(),
+        (2, 2) => ", the worse of both agents".to_owned(),
         (agents, all) if agents == all => format!(", the worst of all {all} agents"),
         (agents, all) => format!(", the worst of {agents} of {all} agents that were looked at"),
     }
@@ -210,6 +211,7 @@ fn whole(found: &WholeLoop) -> String {
     let last = found.last();
     let (of, name) = (worst_of(*agents, *all), &last.agent.name);
     let whose = match last.network {
+        Some(_) if *all == 2 => "both agents together".to_owned(),
         Some(_) => format!("all {all} agents together"),
         None => format!("{name}{of}"),
     };

@@ -26,6 +26,7 @@ use thiserror::Error;
 use crate::conserved::Tally;
 use crate::instance::{designed, is_consensus};
 use crate::kinds::{is_its_own_reference, is_lagrangian};
+use crate::links::may_time_out;
 
 /// Why there is no setup in which everybody follows its reference exactly.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -39,6 +40,9 @@ pub enum NoIdeal {
     /// The baseline differentiates what it hears: z jumps with messages, and no velocity follows it exactly.
     #[error("the velocity that backstepping asks for jumps with messages, so that it cannot be followed exactly")]
     Backstepping,
+    /// Messages that do not count.
+    #[error("messages may become older than `message_timeout_s` and do not count then, so that the network is another")]
+    TimesOut,
     /// Reference dynamics from outside.
     #[error("the reference dynamics are not those of a design of the paper")]
     Own,
@@ -88,6 +92,9 @@ pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
     if !is_consensus(setup) {
         return Err(NoIdeal::Own);
     }
+    if may_time_out(setup) {
+        return Err(NoIdeal::TimesOut);
+    }
     let integral = reference.is::<PureIntegral>();
     let agents = setup.agents.iter().enumerate();
     Ok(Setup {
@@ -99,9 +106,10 @@ pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
 }
 
 /// `setup` with every agent that follows a leader, and a leader that is an agent, replaced by a point mass of 1 kg under (6) that starts where it
-/// starts, in continuous time; `None` where a law is none of (6)–(7). With z(0) = q̇(0) it follows its reference exactly, as in [`ideal`].
+/// starts, in continuous time; `None` where a law is none of (6)–(7), or messages
+/// may be too old to count. With z(0) = q̇(0) it follows its reference exactly, as in [`ideal`].
 pub(crate) fn behind_leader(setup: &Setup) -> Option<Setup> {
-    setup.following()?;
+    setup.following().filter(|_| !may_time_out(setup))?;
     let mass = |(agent, own): (usize, &AgentSetup)| {
         let start = Start { rest: Vec::new(), ..own.start.clone() };
         is_lagrangian(own)

@@ -11,7 +11,7 @@ mod theorem_3;
 mod tried;
 
 pub(crate) use following::certainly_slowest_per_s;
-pub(crate) use own_targets::hurwitz;
+pub(crate) use own_targets::{hurwitz, lowest_asked};
 
 use forwardstep_sim::Setup;
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};

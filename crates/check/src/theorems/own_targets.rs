@@ -9,7 +9,8 @@ use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{AgentSetup, AttitudeLaw, Law, PassivityFilterLaw, Setup, TaskSpaceLaw};
 
 use crate::hypothesis::{Bounded, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
-use crate::kinds::Claim;
+use crate::inertia::bounded_anywhere;
+use crate::kinds::{Claim, is_lagrangian};
 use crate::laws::{self, kind_of};
 use crate::report::Report;
 use crate::theorem::Theorem;
@@ -40,8 +41,7 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
             let desired = setup.reference.downcast::<Desired>().map(|desired| desired.polynomial.order());
             let needed = desired.unwrap_or_else(|| kind_of(agent).target_derivatives(agent));
             let tracking = setup.tracks(index);
-            // A formation may travel: of an offset only the derivatives count.
-            let lowest = if tracking { 0 } else { 1 };
+            let lowest = lowest_asked(setup, index);
             let known = |target: &Trajectory| how_far(target, lowest..=needed, setup.time.end_s);
             let bounded = match (known(target), attitude_from(agent)) {
                 // A quaternion of any length: that it grows says nothing of the attitude.
@@ -54,16 +54,31 @@ pub(super) fn bounded(setup: &Setup) -> Vec<Hypothesis> {
                 }
                 (bounded, _) => bounded,
             };
-            let group = Group { derivatives: needed, tracking, bounded };
+            let group = Group { derivatives: needed, lowest, tracking, bounded };
             groups.entry(group).or_default().push(Named::of(setup, index));
         }
     }
-    let hypothesis = |(Group { derivatives, bounded, tracking }, agents): (Group, Vec<Named>)| {
-        let subject =
-            if tracking { Subject::Targets { agents, derivatives } } else { Subject::Offsets { agents, derivatives } };
+    let hypothesis = |(Group { derivatives, lowest, bounded, tracking }, agents): (Group, Vec<Named>)| {
+        let subject = match tracking {
+            true => Subject::Targets { agents, derivatives, travels: lowest > 0 },
+            false => Subject::Offsets { agents, derivatives },
+        };
         Hypothesis::about(Id::BoundedTarget, subject, MotionEvidence::Derivatives(bounded))
     };
     groups.into_iter().map(hypothesis).collect()
+}
+
+/// The lowest derivative of a target, or of an offset, that has to be bounded. A formation may travel. So may a robot under (6)–(7) whose M, C
+/// and g stay bounded wherever it is, as that of revolute joints: Y(q, q̇, z, ż) is, as soon as q̇_d and q̈_d are, and q − q_d obeys an equation in
+/// which q_d does not occur. Where a target stays, that is said.
+pub(crate) fn lowest_asked(setup: &Setup, index: usize) -> usize {
+    let agent = &setup.agents[index];
+    let stays =
+        || agent.target.iter().all(|target| (0..target.axes()).all(|axis| target.is_bounded(axis, 0) == Some(true)));
+    let desired = setup.reference.downcast::<Desired>();
+    let is_linear = desired.is_none_or(|it| it.coupling.is_none() && it.heard.is_empty() && it.protocol.is_none());
+    let may_travel = || is_lagrangian(agent) && is_linear && bounded_anywhere(agent) && !stays();
+    usize::from(!setup.tracks(index) || may_travel())
 }
 
 /// The first entry of the quaternion in what is followed, which of any length stands for an attitude.
@@ -78,13 +93,14 @@ fn attitude_from(agent: &AgentSetup) -> Option<usize> {
 #[derive(Clone, Copy, PartialEq)]
 struct Group {
     derivatives: usize,
+    lowest: usize,
     tracking: bool,
     bounded: Bounded,
 }
 
 impl Group {
     /// What tells groups apart, in the order in which they are listed.
-    fn key(&self) -> (usize, u8, [u64; 3], bool) {
+    fn key(&self) -> (usize, u8, [u64; 3], bool, usize) {
         let (rank, numbers) = match self.bounded {
             Bounded::ForEver => (0, [0; 3]),
             Bounded::NotShown => (1, [0; 3]),
@@ -94,7 +110,7 @@ impl Group {
                 (2, [derivative as u64, t_s, value])
             }
         };
-        (self.derivatives, rank, numbers, self.tracking)
+        (self.derivatives, rank, numbers, self.tracking, self.lowest)
     }
 }
 

@@ -351,7 +351,7 @@ fn what_s_adds_is_said_with_its_numbers() {
     assert!(number("drift_gain") > 1.3 * number("drift_rms_gain"));
     assert!(text.contains(" rad, and the posture may move at ≤ ") && text.contains(" rad/s ("), "{text}");
     assert!(
-        text.contains("everybody together moves by at most ")
+        text.contains("everybody together moves at a speed of at most ")
             && numbers.iter().any(|n| n.0 == "drift_per_s" && n.1 > 0.0)
     );
     // A hand's push is known only along the run.

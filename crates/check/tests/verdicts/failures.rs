@@ -1,13 +1,16 @@
 //! What is said where messages time out, or a run goes on under a safe command.
 
+use std::ops::ControlFlow;
+
 use forwardstep_check::hypothesis::LinkEvidence;
-use forwardstep_check::{Answer, Evidence, Id, check};
+use forwardstep_check::{Answer, Evidence, Id, NoCourse, NoIdeal, check, course};
 use forwardstep_core::controller::Floor;
 use forwardstep_core::expression::Expression;
 use forwardstep_core::robot::tree::{Follows, JointKind, Uncertain};
 use forwardstep_core::sampled::SafeCommand;
-use forwardstep_sim::delay::{Basis, Delay};
+use forwardstep_sim::delay::{Basis, Delay, Loss, PacketLink, Sinusoid};
 use forwardstep_sim::formula::BoundedFormula;
+use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{Setup, ThrustKind, TipSetup};
 
 use super::{constant, control, pair};
@@ -26,6 +29,11 @@ fn messages_that_time_out_take_edges_away_that_the_graphs_have() {
     // The delay and a period of 0.1 s.
     assert_eq!(said(Some(0.41), constant()), Some(Answer::Holds));
     assert_eq!(said(Some(0.39), constant()), Some(Answer::NotShown));
+    // Between the delay and that, what a sample hears may still be in time; below, nothing is.
+    assert_eq!(said(Some(0.3), constant()), Some(Answer::NotShown));
+    assert_eq!(said(Some(0.29), constant()), Some(Answer::Violated));
+    // 0.2 + 0.1 is 0.3, though their doubles add to more.
+    assert_eq!(said(Some(0.3), Delay::constant(0.2)), Some(Answer::Holds));
     // One of several whose bound is not known for ever is enough.
     let faster = Expression::variable(0).power(2.0).sin_of() * 0.05 + 0.1;
     let mut setup = pair([Delay::new(BoundedFormula::new(faster, 20.0)), constant()]);
@@ -33,6 +41,51 @@ fn messages_that_time_out_take_edges_away_that_the_graphs_have() {
     setup.control.as_mut().unwrap().failures.message_timeout_s = Some(9.0);
     let found = check(&setup).hypotheses.into_iter().find(|h| h.id == Id::MessagesInTime).unwrap();
     assert_ne!(found.answer(), Answer::Holds);
+}
+
+#[test]
+fn a_link_over_which_everything_is_too_old_is_told_by_its_ends() {
+    let said = |delay: Delay, schedule: fn(Vec<Phase>) -> Schedule| {
+        let mut setup = pair([delay, Delay::constant(0.0)]);
+        let first = setup.network.schedule.graphs[0].clone();
+        let last = first.iter().filter(|edge| edge.delay != 0).cloned().collect();
+        let phases = [first, last].map(|edges| Phase { edges, dwell_s: 1.0 });
+        setup.network.schedule = schedule(phases.into());
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.message_timeout_s = Some(0.25);
+        let found = check(&setup).hypotheses.into_iter().find(|h| h.id == Id::MessagesInTime).unwrap();
+        (found.answer(), found.because())
+    };
+    let (answer, because) = said(Delay::constant(0.3), Schedule::periodic);
+    let expected =
+        "arm-2 never hears arm-1: what comes is at least 0.3 s old, and what is older than 0.25 s does not count";
+    assert_eq!((answer, because.as_str()), (Answer::Violated, expected));
+    // What happens on a link that is gone soon says nothing.
+    assert_eq!(said(Delay::constant(0.3), Schedule::once).0, Answer::NotShown);
+    let swings = |mean_s| Delay::new(Sinusoid { mean_s, amplitude_s: 0.1, period_s: 2.0, phase_rad: 0.0 });
+    assert_eq!(said(swings(0.36), Schedule::periodic).0, Answer::Violated);
+    assert_eq!(said(swings(0.34), Schedule::periodic).0, Answer::NotShown);
+    let radio = |latency_s: f64| {
+        let loss = Loss::Never;
+        let link =
+            PacketLink { every_s: 0.02, first_s: 0.0, latency_s, jitter_s: 0.1, loss, most_in_a_row: None, seed: 1 };
+        Delay::new(link.trace((0, 1), 20.0).unwrap())
+    };
+    assert_eq!(said(radio(0.26), Schedule::periodic).0, Answer::Violated);
+    assert_eq!(said(radio(0.24), Schedule::periodic).0, Answer::NotShown);
+}
+
+/// Where messages may not count, the network of the prediction is not that of the run.
+#[test]
+fn regress_nothing_is_predicted_over_links_whose_messages_time_out() {
+    let said = |timeout_s: f64| {
+        let mut setup = pair([Delay::constant(0.3), Delay::constant(0.0)]);
+        setup.control = control(0.0);
+        setup.control.as_mut().unwrap().failures.message_timeout_s = Some(timeout_s);
+        course(&setup, &mut |_| ControlFlow::Continue(())).map(|_| ())
+    };
+    assert_eq!(said(0.41), Ok(()));
+    assert_eq!(said(0.39), Err(NoCourse::Ideal(NoIdeal::TimesOut)));
 }
 
 /// The bound of all links is known no better than that of any.

@@ -89,10 +89,13 @@ fn conclude(report: &Report, accepted: &[Id], console: &mut Console) {
     }
     let outcome = report.worst_without(accepted);
     let (style, words) = (style(outcome), outcome.words());
-    let reasons: Vec<&str> = (report.hypotheses.iter())
-        .filter(|hypothesis| hypothesis.answer() == outcome && !accepted.contains(&hypothesis.id))
-        .map(|hypothesis| hypothesis.id.name())
-        .collect();
+    let mut reasons: Vec<&str> = Vec::new();
+    for hypothesis in &report.hypotheses {
+        let name = hypothesis.id.name();
+        if hypothesis.answer() == outcome && !accepted.contains(&hypothesis.id) && !reasons.contains(&name) {
+            reasons.push(name);
+        }
+    }
     let because =
         if outcome.is_fine() || reasons.is_empty() { String::new() } else { format!(" ({})", reasons.join(", ")) };
     let but =

@@ -108,6 +108,11 @@ fn read(earlier: &[String], text: &str, kinds: &Kinds) -> Result<Given, Status> 
         return Ok(Given::Again(first));
     }
     let path = Path::new(text);
+    if shipped_scenario(text).is_some() && path.join("summary.json").is_file() {
+        remark(format_args!(
+            "note: `{text}` is taken as the shipped scenario; the run in the folder of that name is `./{text}`"
+        ));
+    }
     if shipped_scenario(text).is_none() && path.is_dir() {
         // Once for its mistakes, and again when all others have been run.
         SavedRun::look_with(path, kinds).map_err(|error| complain(&error))?;

@@ -152,9 +152,12 @@ fn head(scenario: &Scenario, trial: Trial, posture: &[f64], console: &mut Consol
         "{DIM}  {} is pushed with {torque} {force} on {axis}, at rest where all agree: for {PUSH_S} s, and for all of {} s{DIM:#}",
         agent.name, setup.time.end_s
     ));
+    // Beside the largest, what rounding leaves is zero.
+    let largest = posture.iter().fold(1.0_f64, |largest, q| largest.max(q.abs()));
     let place = |(axis, q): (usize, &f64)| {
         let unit = names::unit(setup, trial.agent, Signal::Position, axis);
-        format!("{} {} {unit}", agent.robot.axes[axis].name, rounded(*q))
+        let q = if q.abs() < 1e-12 * largest { 0.0 } else { *q };
+        format!("{} {} {unit}", agent.robot.axes[axis].name, rounded(q))
     };
     let place: Vec<String> = posture.iter().enumerate().take(MOST_AXES).map(place).collect();
     let more = if posture.len() > MOST_AXES { ", …" } else { "" };

@@ -55,6 +55,10 @@ pub(super) fn check_folder(path: &Path) -> Result<(), Plain<String>> {
 /// work, so that none is lost.
 pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool) -> Result<(), Plain<String>> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder.filter(|folder| folder.exists() && !folder.is_dir()) {
+        let said = format!("`{}` exists and is no folder to write `{}` into", shown(folder), shown(path));
+        return Err(Plain::with_help(said, Some("name a folder")));
+    }
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
         let said = format!("there is no folder `{}` to write `{}` into", shown(folder), shown(path));
         return Err(Plain::with_help(said, Some("make it first")));

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Injection;
-use forwardstep::io::output::names::{agent_name, gap_unit, limits_by_itself, torque_words, unit};
+use forwardstep::io::output::names::{agent_name, clipped_words, gap_unit, torque_words, unit};
 use forwardstep::io::output::{
     Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Load, Metrics, RunRecord, WatchedMargin,
     coarse_rows,
@@ -50,13 +50,13 @@ pub(crate) fn summary(
     if let Some(settled_s) = metrics.settled_s {
         rows.push(("settled after", format!("{} s", instant(settled_s))));
     }
-    if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.course()) {
+    // Who was never apart has nothing to settle.
+    if metrics.disagreement.initial().is_some_and(|initial| initial != 0.0) {
         let time = |t_s: Option<f64>| t_s.map_or_else(|| "not yet".to_owned(), |t_s| format!("{} s", instant(t_s)));
-        let (predicted, observed) = (time(course.settled_s), time(metrics.settled_to_1_percent_s));
-        // Who was never apart has nothing to settle.
-        if metrics.disagreement.initial() != Some(0.0) {
-            rows.push(("settled to 1 %", format!("{observed}, predicted {predicted}")));
-        }
+        let course = record.prediction.as_ref().and_then(|prediction| prediction.course());
+        let predicted = course.map(|course| format!(", predicted {}", time(course.settled_s)));
+        let observed = time(metrics.settled_to_1_percent_s);
+        rows.push(("settled to 1 %", format!("{observed}{}", predicted.unwrap_or_default())));
     }
     if let Some(s) = metrics.final_tracking_error {
         rows.push(("final tracking error", format!("|s| ≤ {}", short(s))));
@@ -137,16 +137,7 @@ fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) ->
         let agent = agent_name(setup, agent);
         rows.push(("sampling margin", format!("σ = {} at most, {agent} at {} s", short(sigma), instant(t_s))));
     }
-    if let Some(ClippedSamples { samples, torque, rate }) = clipped {
-        let words = if torque + rate == 0 && limits_by_itself(setup) {
-            format!("none of {samples} samples by the controllers; what wheels and rotors limit is not counted")
-        } else if torque + rate == 0 {
-            format!("none of {samples} samples")
-        } else {
-            format!("{torque} by limits of torque, {rate} by limits of rate, of {samples} samples")
-        };
-        rows.push(("clipped", words));
-    }
+    rows.extend(clipped.and_then(|clipped| clipped_words(setup, clipped)).map(|words| ("clipped", words)));
     rows
 }
 

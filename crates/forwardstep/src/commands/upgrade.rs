@@ -15,8 +15,11 @@ use crate::status::Status;
 /// Why a file was not converted.
 #[derive(Debug, Error)]
 enum UpgradeError {
-    #[error("`--out` names one file, but several are to be converted")]
-    OneFile,
+    #[error("`{option}` is for one file, but several are to be converted")]
+    OneFile {
+        /// What was asked for.
+        option: &'static str,
+    },
 }
 
 fn refused(error: UpgradeError) -> Status {
@@ -25,8 +28,9 @@ fn refused(error: UpgradeError) -> Status {
 
 /// Converts files to the format that is read now, each by itself.
 pub(crate) fn upgrade(options: &UpgradeOptions, console: &mut Console) -> Status {
-    if options.out.is_some() && options.files.len() > 1 {
-        return refused(UpgradeError::OneFile);
+    let of_one = [(options.out.is_some(), "--out"), (options.stdout, "--stdout")];
+    if let Some((_, option)) = of_one.into_iter().find(|(is_asked, _)| *is_asked && options.files.len() > 1) {
+        return refused(UpgradeError::OneFile { option });
     }
     let failed = options.files.iter().filter_map(|file| one(file, options, console).err());
     failed.fold(Status::Fine, |_, status| status)
@@ -56,7 +60,7 @@ fn one(path: &Path, options: &UpgradeOptions, console: &mut Console) -> Result<(
         say(format!("{}:{}: {} → {}", shown(path), moved.line, moved.from, moved.to));
     }
     if options.stdout {
-        console.verbatim(upgraded.text);
+        console.file(&upgraded.text);
     }
     Ok(())
 }

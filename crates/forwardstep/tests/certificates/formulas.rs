@@ -28,6 +28,12 @@ fn delayed(delay: &str) -> String {
     masses(&format!("delay.formula_s = \"{delay}\"\n{RING}"))
 }
 
+/// The torque on the first of three masses.
+fn pushed(force: &str) -> String {
+    let push = format!("[[external_wrenches]]\non = [\"m-1\"]\nby.force_n = [\"{force}\"]\n[network]");
+    delayed("0.1").replace("[network]", &push)
+}
+
 /// Two masses that follow a leader under (108); `motion` is what stands under its key.
 fn led(motion: &str, gain: &str) -> String {
     let text = masses("edges = [[\"leader\", \"m-1\"], [\"m-1\", \"m-2\"], [\"m-2\", \"m-3\"]]");
@@ -301,6 +307,25 @@ impl Draws {
             6 => format!("({a})^2"),
             _ => format!("{}({a})", self.of(&["sin", "cos", "tanh", "atan", "abs"])),
         }
+    }
+}
+
+#[test]
+fn torques_that_fade_like_1_over_t_are_certified() {
+    let holds = ("holds".to_owned(), "accepted".to_owned());
+    for force in [
+        "3*exp(-t)",
+        "exp(-0.05*t)*sin(t) + 2/(1 + t)",
+        "sin(t)*cos(3*t)/(1 + t^2)",
+        "t*exp(-0.3*t)",
+        "(1 + sin(t))*exp(-t/4) - cos(t)/(2 + t)",
+        "1/(1 + t)*tanh(t)",
+        "t/(1 + t^2)",
+    ] {
+        assert_eq!(judged(&pushed(force), "pushes-end"), holds, "{force}");
+    }
+    for force in ["sin(t)", "1/sqrt(1 + t)", "t/(1 + t)", "1/log(3 + t)", "exp(-t) + 0.001"] {
+        assert_eq!(judged(&pushed(force), "pushes-end").0, "not covered by the paper", "{force}");
     }
 }
 

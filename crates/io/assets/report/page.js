@@ -54,9 +54,9 @@ const fill = (card, height) => {
   mine.plot.recorded = () => mine.plot.data.map((column, k) => data.picked(grid, built.series[k - 1]?.values.linear?.() ?? column));
   const lost = built.series.map(({ values }) => values.beyond_s ?? null).filter((t) => t !== null);
   if (lost.length) canvas.append(element("p", { className: "note beyond", textContent: `${lost.length < built.series.length ? "Some curves are b" : "B"}eyond what the page can draw from t = ${number(Math.min(...lost))} s on.` }));
-  if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis; the largest is ${number(far.largest)}.` }));
+  if (far) canvas.append(element("p", { className: "note", textContent: `Some values leave this axis${lost.length ? "" : `; the largest is ${number(far.largest)}`}.` }));
   const banded = isBanded() && built.series.some((s) => QUANTILES.some(([, label]) => label === s.label));
-  if (banded) canvas.append(element("p", { className: "note" }, `${shownCurves()} agents, by quantiles at each time. `, element("span", { className: "screen", textContent: `Curves are drawn of up to ${MOST_CURVES}: hide others in the legend, or choose one beside the clock.` })));
+  if (banded) canvas.append(element("p", { className: "note" }, `${shownCurves()} agents, by quantiles ${index.grids.rows.main ? "of gathered rows" : "at each time"}. `, element("span", { className: "screen", textContent: `Curves are drawn of up to ${MOST_CURVES}: hide others in the legend, or choose one beside the clock.` })));
   if (built.key || banded) card.append(key(built.series, mine.plot));
   offer(card, mine.plot);
 };

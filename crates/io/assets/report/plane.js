@@ -102,6 +102,8 @@ const drawPlane = (target, [acrossId, upId], height) => {
     const inner = { left: MARGIN.left, top: MARGIN.top + head, width: width - MARGIN.left - MARGIN.right, height: high - MARGIN.top - MARGIN.bottom };
     const ends = (values) => {
       const [low, top] = spread([...shown.map((c) => rangeOf(values(c), from, to)), [Infinity, -Infinity]]);
+      const far = outliers(shown.map((c) => ({ values: values(c) })));
+      if (far) return linearRange(null, Math.max(low, -far.usual), Math.min(top, far.usual));
       return low <= top ? linearRange(null, low, top) : [-1, 1];
     };
     const [xs, ys] = [ends((c) => c.x), ends((c) => c.y)];
@@ -109,7 +111,8 @@ const drawPlane = (target, [acrossId, upId], height) => {
     // A metre is as long in either direction.
     if (across.unit === up.unit) perX = perY = Math.max(perX, perY);
     const [midX, midY] = [(xs[0] + xs[1]) / 2, (ys[0] + ys[1]) / 2];
-    const to2 = (x, y) => [inner.left + inner.width / 2 + (x - midX) / perX, inner.top + inner.height / 2 - (y - midY) / perY];
+    const near = (pixels) => Math.max(-FAR * width, Math.min(FAR * width, pixels));
+    const to2 = (x, y) => [inner.left + inner.width / 2 + near((x - midX) / perX), inner.top + inner.height / 2 - near((y - midY) / perY)];
     const [right, bottom] = [inner.left + inner.width, inner.top + inner.height];
     const ticks = (mid, per, length, room, draw) => {
       const step = stepOf(per, room);

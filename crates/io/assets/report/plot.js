@@ -89,10 +89,15 @@ const linearRange = (u, min, max) => {
   return [min - pad, max + pad];
 };
 
+// What is drawn of values beyond an axis, in parts of it.
+const FAR = 1000;
+
 // A run that blew up at its end would flatten everything before: the axis then shows what the signals kept to until then.
 const outliers = (series) => {
+  // A run that blows up does so at its end, which beside another may come early.
   const sizeUpTo = (share) => series.reduce((most, { values }) => {
-    for (let k = 0; k < Math.ceil(share * values.length); k++) if (Math.abs(values[k]) > most) most = Math.abs(values[k]);
+    const end = values.findLastIndex((v) => v !== null) + 1;
+    for (let k = 0; k < Math.ceil(share * end); k++) if (Math.abs(values[k]) > most) most = Math.abs(values[k]);
     return most;
   }, 0);
   const [usual, largest] = [sizeUpTo(0.95), sizeUpTo(1)];
@@ -167,7 +172,7 @@ const readout = (log) => {
     }
     const near = [];
     for (let k = 1; k < u.series.length; k++) {
-      const v = u.data[k][idx];
+      const v = u.whole[k - 1][idx];
       if (u.series[k].show && v != null) near.push({ k, v, distance: Math.abs(u.valToPos(v, "y") - top) });
     }
     near.sort((a, b) => a.distance - b.distance);
@@ -319,8 +324,10 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
     },
     plugins: [...(cursor ? [readout(log)] : []), clockLine()],
   };
-  const plot = new uPlot(options, [times, ...series.map((s) => s.values)], target);
-  Object.assign(plot, { besides, unit });
+  // What is far beyond the axis leaves it as steeply from nearer by: who prints a page may drop a path with ends at 10^35.
+  const near = within ? (v) => v && Math.max(-FAR * within, Math.min(FAR * within, v)) : null;
+  const plot = new uPlot(options, [times, ...series.map((s) => (near ? s.values.map(near) : s.values))], target);
+  Object.assign(plot, { besides, unit, whole: series.map((s) => s.values) });
   plots.add(plot);
   return plot;
 };

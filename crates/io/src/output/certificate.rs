@@ -182,6 +182,7 @@ impl Names<'_> {
             Proof::Below(t_s, edge) => json!({ "kind": "below", "t_s": decimal(t_s), "edge": self.edge(*edge) }),
             Proof::Limit(edge) => json!({ "kind": "limit", "edge": self.edge(*edge) }),
             Proof::LosesAll(edge) => json!({ "kind": "loses-all", "edge": self.edge(*edge) }),
+            Proof::Older(edge) => json!({ "kind": "older", "edge": self.edge(*edge) }),
             Proof::NoValue(agent, state) => {
                 json!({ "kind": "no-value", "agent": self.of(*agent), "state": numbers(state) })
             }

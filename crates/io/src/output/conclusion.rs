@@ -225,11 +225,17 @@ enum Trend {
 impl Trend {
     /// By the last quarter of the time and the one before it.
     fn of(t_s: &[f64], overall: &[f64]) -> Trend {
-        match left_in_quarter(0, t_s, overall) {
-            Some((left, steadily)) if left < if steadily { FALLS_STEADILY } else { FALLS } => Trend::Falls(left),
-            Some((left, _)) if left > 1.0 / FALLS => Trend::Grows,
-            Some(_) => Trend::Stays,
-            None => Trend::Unknown,
+        let Some((left, steadily)) = left_in_quarter(0, t_s, overall) else { return Trend::Unknown };
+        if left < if steadily { FALLS_STEADILY } else { FALLS } {
+            return Trend::Falls(left);
+        }
+        // One peak of noise decides what is largest, and not a mean: it falls, unless it has risen again at the end.
+        let mean = |eighths: std::ops::Range<u32>| mean_in_eighths(eighths, t_s, overall);
+        let (now, rises) = (mean(0..2) / mean(2..4), mean(0..1) > mean(1..2));
+        match rises {
+            false if now < FALLS => Trend::Falls(now),
+            true if left > 1.0 / FALLS => Trend::Grows,
+            _ => Trend::Stays,
         }
     }
 
@@ -264,6 +270,16 @@ fn left_in_quarter(quarters: u32, t_s: &[f64], overall: &[f64]) -> Option<(f64, 
     }
     let largest = |rows: std::ops::Range<usize>| overall[rows].iter().copied().fold(0.0, greater);
     Some((largest(from..end) / largest(before..from), false))
+}
+
+/// The mean of a gap over eighths of the time, counted from the end; not a number where there are no rows.
+fn mean_in_eighths(eighths: std::ops::Range<u32>, t_s: &[f64], overall: &[f64]) -> f64 {
+    let (Some(begin_s), Some(end_s)) = (t_s.first(), t_s.last()) else { return f64::NAN };
+    let row_from =
+        |eighths: u32| t_s.partition_point(|t_s| *t_s < end_s - f64::from(eighths) * 0.125 * (end_s - begin_s));
+    let to = if eighths.start == 0 { overall.len() } else { row_from(eighths.start) };
+    let rows = overall.get(row_from(eighths.end)..to).unwrap_or_default();
+    rows.iter().sum::<f64>() / rows.len() as f64
 }
 
 /// Whether a gap that falls does so more slowly than it did: what is left of it after a time is no measure for what a longer time leaves then.
@@ -449,6 +465,21 @@ mod tests {
         assert_eq!(of(&[9.0, 9.0, 9.0, 9.0, 2.0, 3.0, 3.0, 4.0, 4.0]), Trend::Grows);
         assert_eq!(of(&[1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Trend::Stays, "nothing is left");
         assert_eq!(of(&[3.0, 2.0, 1.0]), Trend::Unknown, "too short to tell");
+    }
+
+    /// One row of noise decides what is largest in a quarter.
+    #[test]
+    fn regress_a_peak_of_noise_is_no_trend() {
+        let t_s: Vec<f64> = (0..=400).map(|row| 0.1 * f64::from(row)).collect();
+        let noisy = |peak_s: f64, gap: &dyn Fn(f64) -> f64| {
+            let value = |t_s: &f64| gap(*t_s) * if (t_s - peak_s).abs() < 0.01 { 2.0 } else { 1.0 };
+            Trend::of(&t_s, &t_s.iter().map(value).collect::<Vec<_>>())
+        };
+        assert!(matches!(noisy(31.0, &|t_s| (-0.03 * t_s).exp()), Trend::Falls(left) if left < 0.8));
+        assert_eq!(noisy(31.0, &|_| 1.0), Trend::Stays);
+        // What comes late and stays is no noise.
+        assert_eq!(noisy(31.0, &|t_s| if t_s < 36.0 { 1.0 } else { 3.0 }), Trend::Grows);
+        assert_ne!(noisy(0.0, &|t_s| if t_s < 38.0 { (-0.1 * t_s).exp() } else { 0.5 }), Trend::Falls(0.5));
     }
 
     #[test]

@@ -36,16 +36,33 @@ struct Break {
 impl Grid {
     /// About `budget` points for rows at `rows_t_s`. Break-points are kept, unless they alone would take half of them.
     pub(crate) fn new(rows_t_s: &[f64], break_points: &[f64], budget: usize) -> Grid {
+        Grid::busy(rows_t_s, break_points, budget, std::iter::empty())
+    }
+
+    /// The same with more points where these signals change more: half of all points are spread evenly over the rows, half over what they change
+    /// by. A start that is over in a hundredth of the run would else be one bucket, whose extremes stand far from where they belong.
+    pub(crate) fn busy<'a>(
+        rows_t_s: &[f64],
+        break_points: &[f64],
+        budget: usize,
+        signals: impl Iterator<Item = &'a [f64]>,
+    ) -> Grid {
         let breaks = if break_points.len() * 4 > budget { &[] } else { break_points };
         let breaks = split(rows_t_s, breaks);
         let rows: usize = rows_t_s.len();
         let available = budget.saturating_sub(3 * breaks.len()).max(12);
-        let rows_per_bucket = if rows <= available { 1 } else { rows.div_ceil(available / 3) };
+        let decimated = rows > available;
+        let progress = if decimated { progress(rows, signals) } else { Vec::new() };
+        let share = 3.0 / available as f64;
+        let bucket_end = |start: usize| match progress.get(start) {
+            Some(from) => progress.partition_point(|share_so_far| *share_so_far < from + share).max(start + 1),
+            None => start + 1,
+        };
 
-        let mut grid = Grid { t_s: Vec::new(), exact: Vec::new(), places: Vec::new(), decimated: rows_per_bucket > 1 };
+        let mut grid = Grid { t_s: Vec::new(), exact: Vec::new(), places: Vec::new(), decimated };
         let mut start = 0;
         for found in breaks {
-            grid.fill(rows_t_s, start..found.before.end, rows_per_bucket);
+            grid.fill(rows_t_s, start..found.before.end, &bucket_end);
             start = found.on.end;
             let exact: &[bool] = match found.on.len() {
                 0 => &[false, false],
@@ -58,18 +75,18 @@ impl Grid {
             grid.exact.extend(exact);
             grid.places.push(Place::Break(found));
         }
-        grid.fill(rows_t_s, start..rows, rows_per_bucket);
+        grid.fill(rows_t_s, start..rows, &bucket_end);
         grid
     }
 
     /// First and last row of the recording stay as they are; the rest goes into buckets.
-    fn fill(&mut self, rows_t_s: &[f64], mut rows: Range<usize>, rows_per_bucket: usize) {
+    fn fill(&mut self, rows_t_s: &[f64], mut rows: Range<usize>, bucket_end: &dyn Fn(usize) -> usize) {
         let last = (rows.end == rows_t_s.len()).then(|| rows.next_back()).flatten();
         if rows.start == 0 {
             self.row(rows_t_s, rows.next());
         }
         while !rows.is_empty() {
-            let bucket = rows.start..(rows.start + rows_per_bucket).min(rows.end);
+            let bucket = rows.start..bucket_end(rows.start).min(rows.end);
             rows.start = bucket.end;
             if bucket.len() <= 3 {
                 bucket.for_each(|row| self.row(rows_t_s, Some(row)));
@@ -111,6 +128,31 @@ impl Grid {
         }
         points
     }
+}
+
+/// The part of all points that is spent before each row: rows count alike, and so does what signals change by, each as a part of all that it does.
+fn progress<'a>(rows: usize, signals: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let mut changed = vec![0.0; rows];
+    for values in signals {
+        let steps = || {
+            values
+                .windows(2)
+                .map(|pair| (pair[1] - pair[0]).abs())
+                .map(|step| if step.is_finite() { step } else { 0.0 })
+        };
+        let all: f64 = steps().sum();
+        if all > 0.0 && all.is_finite() {
+            changed.iter_mut().skip(1).zip(steps()).for_each(|(changed, step)| *changed += step / all);
+        }
+    }
+    let (all, even) = (changed.iter().sum::<f64>(), 1.0 / rows as f64);
+    let mut so_far = 0.0;
+    let before = |changed: &f64| {
+        let before = so_far;
+        so_far += if all > 0.0 { 0.5 * (even + changed / all) } else { even };
+        before
+    };
+    changed.iter().map(before).collect()
 }
 
 /// Values at times that rise, on straight lines between those that were kept, of which the first and the last go on.
@@ -315,6 +357,24 @@ mod tests {
         let ripple: Vec<f64> = (0..3001).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let drawn = grid.sample(&t_s, &ripple, true);
         assert!(drawn.windows(3).all(|three| three.contains(&1.0) && three.contains(&-1.0)));
+    }
+
+    /// Of 300 agents there is room for 64 points; evenly spread, the peak of the start stood a second late.
+    #[test]
+    fn regress_points_stand_where_signals_move() {
+        let t_s = rows(3001, 0.02);
+        let values: Vec<f64> = t_s.iter().map(|t| 30.0 * t * (-t / 0.36).exp()).collect();
+        let still = vec![7.0; 3001];
+        let grid = Grid::busy(&t_s, &[], 64, [&values[..], &still].into_iter());
+        assert!(grid.t_s.len() < 80 && grid.exact.iter().filter(|exact| **exact).count() > 20, "{}", grid.t_s.len());
+        let drawn = grid.sample(&t_s, &values, true);
+        let peak = (0..drawn.len()).max_by(|a, b| drawn[*a].total_cmp(&drawn[*b])).unwrap();
+        assert!((grid.t_s[peak] - 0.36).abs() < 0.1, "{}", grid.t_s[peak]);
+        // What stands still and what is not finite moves no points.
+        for odd in [&still[..], &[f64::NAN; 3001]] {
+            let busy = Grid::busy(&t_s, &[], 64, std::iter::once(odd));
+            assert_eq!(busy.t_s, Grid::new(&t_s, &[], 64).t_s);
+        }
     }
 
     #[test]

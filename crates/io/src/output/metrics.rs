@@ -425,10 +425,16 @@ pub(crate) fn balance_residuals(table: &Table<'_>, agent: usize) -> Option<Vec<f
     let v = table.column(agent, Signal::Lyapunov, 0)?;
     let dissipated = table.column(agent, Signal::Dissipation, 0)?;
     let start = *v.first()?;
-    let pushed = table.setup.agents.get(agent).is_some_and(|agent| !agent.pushes.is_empty());
-    let whole = if pushed { v.iter().copied().fold(start, f64::max) } else { start };
-    let scale = whole.max(BALANCE_FLOOR_J);
+    let scale = balance_whole(table, agent)?.max(BALANCE_FLOOR_J);
     Some(v.iter().zip(dissipated).map(|(v, d)| (v + d - start) / scale).collect())
+}
+
+/// V(0) of an agent, or the largest V where pushes put energy in.
+pub(crate) fn balance_whole(table: &Table<'_>, agent: usize) -> Option<f64> {
+    let v = table.column(agent, Signal::Lyapunov, 0)?;
+    let start = *v.first()?;
+    let pushed = table.setup.agents.get(agent).is_some_and(|agent| !agent.pushes.is_empty());
+    Some(if pushed { v.iter().copied().fold(start, f64::max) } else { start })
 }
 
 /// What all agents are to agree on on an axis, their positions less their offsets, at the last row, and the mean of it.

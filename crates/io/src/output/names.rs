@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use forwardstep_core::signal::{Entries, Unit};
 use forwardstep_sim::recording::{Recording, Signal};
-use forwardstep_sim::{ActuatorLimits, AgentSetup, AxisUnit, ChainModel, RotorcraftModel, Setup};
+use forwardstep_sim::{ActuatorLimits, AgentSetup, AxisUnit, ChainModel, ClippedSamples, RotorcraftModel, Setup};
 
 use super::leader::LeaderColumn;
 
@@ -16,8 +16,26 @@ pub fn agent_name(setup: &Setup, agent: usize) -> String {
     setup.agents.get(agent).map_or_else(|| format!("agent-{}", agent + 1), |a| a.name.clone())
 }
 
+/// How many commands limits changed; `None` where there are no limits that change any.
+pub fn clipped_words(setup: &Setup, clipped: ClippedSamples) -> Option<String> {
+    let ClippedSamples { samples, torque, rate } = clipped;
+    let by_itself = limits_by_itself(setup);
+    let actuators = &setup.control.as_ref()?.actuators;
+    let limited = actuators.torque_limit.is_some() || actuators.torque_rate_limit.is_some();
+    if torque + rate > 0 {
+        return Some(format!("{torque} by limits of torque, {rate} by limits of rate, of {samples} samples"));
+    }
+    match (by_itself, limited || setup.agents.iter().any(|agent| agent.enforce_limits)) {
+        (true, _) => {
+            Some(format!("none of {samples} samples by the controllers; what wheels and rotors limit is not counted"))
+        }
+        (false, true) => Some(format!("none of {samples} samples")),
+        (false, false) => None,
+    }
+}
+
 /// Whether an agent has actuators with limits of their own, wheels or rotors, of which controllers know nothing.
-pub fn limits_by_itself(setup: &Setup) -> bool {
+pub(crate) fn limits_by_itself(setup: &Setup) -> bool {
     setup.agents.iter().any(|agent| {
         let wheels = agent.enforce_limits && agent.robot.interface().actuator_limits == ActuatorLimits::Own;
         wheels || agent.robot.kind.downcast().is_some_and(|model: &RotorcraftModel| model.rotors.is_some())

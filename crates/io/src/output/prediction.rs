@@ -236,7 +236,7 @@ impl Predictions {
                 // Of k roots in one place grows a power of t beside the exponential.
                 let several = match multiplicity {
                     0 | 1 => String::new(),
-                    &count => format!(", of multiplicity {count}, beside which a polynomial in t of degree {} decays with it", count - 1),
+                    &count => format!(", of multiplicity {count}, beside which a polynomial in t of a degree up to {} may decay with it", count - 1),
                 };
                 format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}{several}; {into} of it")
             }

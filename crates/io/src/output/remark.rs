@@ -70,7 +70,7 @@ impl fmt::Display for Remark {
             ),
             Remark::FromJournal { rows, cut_off: true } => write!(
                 f,
-                "the run was cut off; {rows} rows come from {JOURNAL}, which is at most about a second behind, and what the run cost is \
+                "the run was cut off; {rows} rows come from {JOURNAL}, to which a run adds its rows every second, and what the run cost is \
                  not known"
             ),
             Remark::FromJournal { rows, cut_off: false } => {

@@ -10,7 +10,7 @@ use toml::de::DeValue;
 use super::de::{ValueDe, plain};
 use super::fault::Fault;
 use super::kinds::Kinds;
-use super::value_problem::ValueProblem;
+use super::value_problem::{CHOICE, ValueProblem};
 
 impl<'a, 'i> ValueDe<'a, 'i> {
     /// One of `choices`: a text, or a table with a single key.
@@ -41,7 +41,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
                 let name = plain(key.get_ref()).map_err(|fault| fault.at(&key.span()))?;
                 Choice { key: name, span: key.span(), content: Some(content), kinds }
             }
-            _ => return Err(self.wrong(&format!("a choice of {}", choices.join(", ")))),
+            _ => return Err(self.wrong(&format!("{CHOICE}{}", choices.join(", ")))),
         };
         if choices.contains(&choice.key) { Ok(choice) } else { Err(choice.unknown(choices)) }
     }

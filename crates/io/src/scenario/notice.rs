@@ -257,6 +257,11 @@ impl Notice {
     }
 }
 
+/// An angle in whole degrees, or with the digits of a small one.
+fn of_degrees(degrees: f64) -> String {
+    if degrees < 10.0 { about(degrees).to_string() } else { format!("{degrees:.0}") }
+}
+
 impl fmt::Display for Notice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -318,9 +323,9 @@ impl fmt::Display for Notice {
             }
             Notice::Rotation { agent, degrees, more } => {
                 let way = if *degrees > 180.0 { "long" } else { "short" };
-                let (turn, other) = (about(*degrees), about(360.0 - degrees));
+                let (turn, other) = (of_degrees(*degrees), of_degrees(360.0 - degrees));
                 write!(f, "{agent} turns by {turn}° to its target, ")?;
-                if turn.to_string() == other.to_string() {
+                if turn == other {
                     write!(f, "which is as far either way")?;
                 } else {
                     write!(f, "the {way} way; from −q it would be {other}°")?;

@@ -44,7 +44,7 @@ pub enum ByFile {
     /// A torque about the axes of the body of a rotorcraft or a spacecraft, in N m: about x, y, z.
     #[serde(rename = "body_torque_n_m")]
     BodyTorqueNM(At<CourseFile>),
-    /// What is added to the equations of a chain: one number for a chain of derivatives, whose last equation it enters; one for
+    /// What is added to the equations of a chain: a list of one number for a chain of derivatives, whose last equation it enters; one for
     /// each equation of a chain in feedback form. In a table of CSV they are `w1`, `w2`, ….
     Disturbance(At<CourseFile>),
     /// A force and a torque on a link of a URDF, or on the outer link of a planar arm, at its end-effector.
@@ -67,7 +67,7 @@ pub struct WrenchFile {
     pub axes: Option<At<AxesFile>>,
     /// The force, in N: x, y, z; for a planar arm x, y. Default: none.
     pub force_n: Option<At<CourseFile>>,
-    /// The torque, in N m: about x, y, z; for a planar arm one number. Default: none.
+    /// The torque, in N m: about x, y, z; for a planar arm a list of one number. Default: none.
     pub torque_n_m: Option<At<CourseFile>>,
 }
 

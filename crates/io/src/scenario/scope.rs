@@ -53,6 +53,11 @@ const WISHES: &[(&[&str], &str)] = &[
         &[
             "obstacle",
             "obstacles",
+            "barrier",
+            "barriers",
+            "sphere",
+            "spheres",
+            "scene",
             "collision",
             "collisions",
             "avoidance",
@@ -98,7 +103,7 @@ const WISHES: &[(&[&str], &str)] = &[
         "submarines and aircraft with wings have no kind of their own. Nearest: `robot.ship` in the plane, `robot.vehicle` and `robot.rotorcraft` in space",
     ),
     (
-        &["camera", "cameras", "vision", "lidar", "image", "perception", "slam"],
+        &["camera", "cameras", "sensor", "sensors", "imu", "gps", "vision", "lidar", "image", "perception", "slam"],
         "controllers measure positions and velocities alone. Nearest: noise, resolution and late samples of those, in `[control]`",
     ),
     (

@@ -9,6 +9,9 @@ use super::refusal::advice_on_quantity;
 use super::scope::{is_one, nearest_here};
 use crate::wording::{are, choose, count, entry_count, is_slip, nearest, number};
 
+/// What begins the words for a value that is one of several kinds.
+pub(super) const CHOICE: &str = "a choice of ";
+
 /// Why a value has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -238,6 +241,7 @@ impl ValueProblem {
             ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
+            ValueProblem::WrongType { found, expected } => return of_choice(found, expected),
             ValueProblem::MissingKey { key } => return missing(key).map(str::to_owned),
             ValueProblem::Unreadable { message } if is_too_deep(message) => {
                 "no value of a scenario is a list of lists of lists of lists, or a table nested so deeply".into()
@@ -250,6 +254,16 @@ impl ValueProblem {
         };
         Some(text)
     }
+}
+
+/// How a value is written that needs a word for what it is.
+fn of_choice(found: &str, expected: &str) -> Option<String> {
+    /// What stands under these is a number.
+    const OF_NUMBERS: [&str; 4] = ["gain", "constant_s", "saturated", "stops_n"];
+    let choices: Vec<&str> = expected.strip_prefix(CHOICE)?.split(", ").collect();
+    let usual = OF_NUMBERS.into_iter().find(|usual| found.parse::<f64>().is_ok() && choices.contains(usual));
+    let (first, value) = usual.map(|usual| (usual, found)).or(choices.first().map(|first| (*first, "…")))?;
+    Some(format!("say which it is, behind the key and a dot, such as `.{first} = {value}`"))
 }
 
 /// Whether the parser gave up on brackets within brackets.

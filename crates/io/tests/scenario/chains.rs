@@ -170,7 +170,7 @@ const DERIVATIVES_CASES: &[Case] = &[
     ("coupling.saturated = 0.4", "coupling = { saturated = 0.4, tanh = 1 }",
         "test.toml:22:31: both `saturated` and `tanh` are given, but only one can be", ""),
     ("coupling.saturated = 0.4", "coupling = 0.4",
-        "test.toml:22:12: found 0.4 where a choice of saturated, tanh, rational should stand", ""),
+        "test.toml:22:12: found 0.4 where a choice of saturated, tanh, rational should stand", "say which it is, behind the key and a dot, such as `.saturated = 0.4`"),
     ("count = 2", "count = 2\ntarget.formulas = [\"t\"]",
         "test.toml:7:1: agent `chain-1`: immersion and invariance knows no offsets", "leave its `target` out; only vehicles and rotorcraft agree up to offsets"),
     ("count = 2", "count = 2\nenforce_limits = true",

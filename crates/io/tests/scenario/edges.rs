@@ -195,7 +195,7 @@ const CASES: &[Case] = &[
     ("from,to\ncart,cart\n", "edges.csv:2:1: `cart` cannot hear itself", ""),
     ("from,to\ncart,arm-1\n\ncart,arm-1\n", "edges.csv:4:1: a second edge from `cart` to `arm-1` in one graph; the first is on line 2", ""),
     ("from,to,weight\ncart,arm-1,heavy\n", "edges.csv:2:12: there is no `heavy` in a formula", "there are `t`, `pi`, `e`, `sin`"),
-    ("from,to,weight\ncart,arm-1,\"max(0, t)\"\n", "edges.csv:2:12: `weight` is 0 at t = 0 s, but must be positive", "max(0.1, …)"),
+    ("from,to,weight\ncart,arm-1,\"max(0, t)\"\n", "edges.csv:2:12: `weight` is 0, or rounds to it, at t = 0 s, but must be positive", "max(0.1, …)"),
     ("from,to,weight\ncart,arm-1,1 + sn(t)\n", "edges.csv:2:16: there is no function `sn`", "did you mean `sin`?"),
     ("from,to,weight\ncart,arm-1,0\n", "edges.csv:2:12: `weight` is 0, but must be positive", ""),
     ("from,to,weight\ncart,arm-1,inf\n", "edges.csv:2:12: inf is not a finite number", ""),

@@ -118,7 +118,7 @@ const CASES: &[Case] = &[
     ("packets = { period_s = 0.1, latency_s = 0, jitter_s = -1, seed = 1 }", "test.toml:29:61: `jitter_s` is -1, but must not be negative", ""),
     ("packets = { period_s = 0.1, latency_s = 0, seed = -1 }", "test.toml:29:57: `seed` is -1, but must not be negative", ""),
     ("packets = { period_s = 0.1, latency_s = 0, seed = 1, lost = 0.1 }", "test.toml:29:60: unknown key `lost`", "did you mean `loss`?"),
-    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss = 0.1 }", "test.toml:29:67: found 0.1 where a choice of random, bursts should stand", ""),
+    ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss = 0.1 }", "test.toml:29:67: found 0.1 where a choice of random, bursts should stand", "say which it is, behind the key and a dot, such as `.random = …`"),
     ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.burst = {} }", "test.toml:29:65: unknown choice `burst`", "did you mean `bursts`?"),
     ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 1.1 } }", "test.toml:29:90: `probability` is 1.1, but must be from 0 to 1", ""),
     ("packets = { period_s = 0.1, latency_s = 0, seed = 1, loss.random = { probability = 0.1, most_consecutive = 0 } }", "test.toml:29:114: `most_consecutive` is 0, but must be from 1 to 1000000", ""),
@@ -136,7 +136,7 @@ const CASES: &[Case] = &[
 #[rustfmt::skip]
 const WEIGHTS: &[Case] = &[
     ("\"1 + sin(t)*2\"", "test.toml:28:10: `weight` is -0.0083171 at t = 3.67 s, but must be positive", "`max(0.1, …)`"),
-    ("\"sin(t)\"", "test.toml:28:10: `weight` is 0 at t = 0 s, but must be positive", "`max(0.1, …)`"),
+    ("\"sin(t)\"", "test.toml:28:10: `weight` is 0, or rounds to it, at t = 0 s, but must be positive", "`max(0.1, …)`"),
     ("\"heavy\"", "test.toml:28:11: there is no `heavy` in a formula", "there are `t`"),
     ("\"0\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),
     ("\"0.1 + 0.2 - 0.3\"", "test.toml:28:10: `weight` is 0, but must be positive", ""),

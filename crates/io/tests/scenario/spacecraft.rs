@@ -242,8 +242,8 @@ fn started(start: &str) -> forwardstep_io::scenario::Scenario {
 fn the_way_round_is_the_one_that_is_asked_for_and_is_said() {
     let minus = STATED
         .replace("[0, 0, 0.479425538604203, 0.877582561890373]", "[0, 0, -0.479425538604203, -0.877582561890373]");
-    let short = "craft turns by 57° to its target, the short way; from −q it would be 300°";
-    let long = "craft turns by 300° to its target, the long way; from −q it would be 57°";
+    let short = "craft turns by 57° to its target, the short way; from −q it would be 303°";
+    let long = "craft turns by 303° to its target, the long way; from −q it would be 57°";
     for (key, plus_sign, minus_sign) in
         [("", 1.0, 1.0), ("shortest", 1.0, 1.0), ("longest", -1.0, -1.0), ("as_stated", 1.0, -1.0)]
     {

@@ -43,7 +43,7 @@ const TIP_CASES: &[Case] = &[
     ("damping.bandwidth_per_s = 40", "damping.bandwidth = 40",
         "test.toml:16:9: unknown choice `bandwidth`", "did you mean `bandwidth_per_s`? choose one of `gain`, `bandwidth_per_s`"),
     ("damping.bandwidth_per_s = 40", "damping = 40",
-        "test.toml:16:11: found 40 where a choice of gain, bandwidth_per_s should stand", ""),
+        "test.toml:16:11: found 40 where a choice of gain, bandwidth_per_s should stand", "say which it is, behind the key and a dot, such as `.gain = 40`"),
     ("damping.bandwidth_per_s = 40", "damping.gain = [1, 2]",
         "test.toml:16:16: `damping.gain` has 2 entries, but `arm` needs 3", ""),
     ("adaptation_gain.bandwidth_per_s = 10", "adaptation_gain.bandwidth_per_s = -10",

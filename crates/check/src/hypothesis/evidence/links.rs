@@ -36,10 +36,14 @@ pub enum LinkEvidence {
     Ages {
         /// None is known to become older, s; `None` where that is not known.
         bound_s: Option<f64>,
+        /// Whether that is not above the time-out, in exact arithmetic.
+        in_time: bool,
         /// The time-out, s.
         timeout_s: f64,
         /// What the bound rests on, the weakest if there are several.
         basis: Basis,
+        /// A link over which all that is heard is older.
+        too_old: Option<TooOld>,
     },
     /// No link has a delay.
     Prompt,
@@ -84,6 +88,17 @@ pub enum LinkEvidence {
     },
 }
 
+/// A link that is there again and again and over which nothing that is heard counts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TooOld {
+    /// Name of the sender.
+    pub from: String,
+    /// Name of the receiver.
+    pub to: String,
+    /// Nothing is younger, s.
+    pub least_s: f64,
+}
+
 /// What a weight does that it must not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WeightFault {
@@ -114,6 +129,7 @@ impl LinkEvidence {
             LinkEvidence::RefutedDelay { .. } | LinkEvidence::RefutedBound(_) | LinkEvidence::RefutedWeight { .. } => {
                 Answer::Violated
             }
+            LinkEvidence::Ages { too_old: Some(_), .. } => Answer::Violated,
             LinkEvidence::Delays { unknown, .. } if unknown.is_empty() => Answer::Holds,
             LinkEvidence::Delays { unknown, .. } if unknown.iter().any(|one| beyond_the_run(*one)) => Answer::NotShown,
             // An age as large as the run is bounded by that alone.
@@ -121,7 +137,7 @@ impl LinkEvidence {
             LinkEvidence::Delays { .. } => Answer::HoldsOnHorizon,
             LinkEvidence::Weights { until_s: None, .. } => Answer::Holds,
             LinkEvidence::Weights { until_s: Some(_), .. } => Answer::NotShown,
-            LinkEvidence::Ages { bound_s: Some(bound_s), timeout_s, .. } if bound_s <= timeout_s => Answer::Holds,
+            LinkEvidence::Ages { in_time: true, .. } => Answer::Holds,
             LinkEvidence::Ages { .. } => Answer::NotShown,
             LinkEvidence::Prompt | LinkEvidence::Coupling { .. } | LinkEvidence::ConstantWeights => Answer::Holds,
             LinkEvidence::Late { .. } | LinkEvidence::VaryingWeights { .. } => Answer::NotCovered,
@@ -130,6 +146,7 @@ impl LinkEvidence {
 
     pub(super) fn rigour(&self) -> Rigour {
         match self {
+            LinkEvidence::Ages { too_old: Some(_), .. } => Rigour::Exact,
             LinkEvidence::Delays { basis, .. } | LinkEvidence::Ages { basis, .. } => match basis {
                 Basis::Rule => Rigour::Exact,
                 Basis::Enclosure => Rigour::Enclosed,

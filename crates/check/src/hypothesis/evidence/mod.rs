@@ -30,7 +30,7 @@ pub use following::FollowingEvidence;
 pub(super) use following::{MOST_HELD, MOST_LEFT};
 pub use graph::GraphEvidence;
 pub use kinds::{FactorEverywhere, KindEvidence, Term};
-pub use links::{LinkEvidence, WeightFault};
+pub use links::{LinkEvidence, TooOld, WeightFault};
 pub use motion::{Bounded, MotionEvidence};
 pub use reference::{ReferenceEvidence, TriedRun};
 pub use robots::{InertiaUnit, MotionExtent, ReachSide, RobotEvidence};

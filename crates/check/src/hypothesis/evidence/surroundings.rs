@@ -16,6 +16,8 @@ pub enum LoopEvidence {
     Pushes {
         /// Everybody whom something acts on.
         pushed: Vec<Named>,
+        /// Which robots under (6)–(7) a torque acts on for ever whose square has a finite integral.
+        fading: Vec<Named>,
         /// Which robots under (6)–(7) a force or a torque acts on for ever.
         torques_for_ever: Vec<Named>,
         /// Whom else something acts on for ever.
@@ -24,7 +26,7 @@ pub enum LoopEvidence {
         springs_for_ever: Vec<Named>,
         /// Whom something acts on that ends, and is not shown to have a bounded value until then.
         unbounded: Vec<Named>,
-        /// When the last push ends, s; infinite where one does not.
+        /// When the last push ends that does not fade, s; infinite where one does not end.
         last_end_s: f64,
     },
     /// What keeps a torque from being applied as asked for.

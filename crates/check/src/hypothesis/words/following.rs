@@ -75,7 +75,7 @@ fn held(left: f64, scale: f64, once: bool) -> String {
             false => String::new(),
         };
         format!(
-            "; held in between, it leaves an error qᵢ − q₀ of about {} in units of the axes{beside}",
+            "; held in between, it leaves an error qᵢ − q₀ of up to about {} in units of the axes{beside}",
             rounded_up(left)
         )
     } else {

@@ -4,7 +4,7 @@ use forwardstep_sim::delay::{Basis, Refuted, Unknown};
 use forwardstep_sim::formula::Witness;
 
 use super::numbers::{Shown, bound, lower_bound, rounded, rounded_down, rounded_up, seconds};
-use crate::hypothesis::{LinkEvidence, WeightFault};
+use crate::hypothesis::{LinkEvidence, TooOld, WeightFault};
 
 /// On a bounded time a continuous formula is uniformly continuous; for ever it may swing faster and faster.
 const SWINGS: &str = "a formula could not be shown to be uniformly continuous for ever, as it is on the run";
@@ -31,6 +31,11 @@ pub(super) fn words(evidence: &LinkEvidence) -> String {
             )
         }
         LinkEvidence::RefutedBound(refuted) => refuted_bound(*refuted),
+        LinkEvidence::Ages { too_old: Some(TooOld { from, to, least_s }), timeout_s, .. } => format!(
+            "{to} never hears {from}: what comes is at least {} s old, and what is older than {} s does not count",
+            seconds(*least_s),
+            seconds(*timeout_s)
+        ),
         LinkEvidence::Ages { bound_s, timeout_s, .. } => {
             let age = bound_s.map_or("how old one becomes is not known".into(), |bound_s| {
                 format!("one becomes {} s old at most", bound(bound_s))

@@ -60,7 +60,14 @@ fn of(subject: &Subject) -> String {
         Subject::Setup => String::new(),
         Subject::Reference => "the reference dynamics".into(),
         Subject::Agent(agent) => agent.name.clone(),
-        Subject::Targets { agents, derivatives } => {
+        Subject::Targets { agents, derivatives, travels: true } => {
+            format!(
+                "the derivatives of the target of {}, which may travel, up to the {}",
+                names(agents),
+                ordinal(*derivatives)
+            )
+        }
+        Subject::Targets { agents, derivatives, travels: false } => {
             format!("the target of {} and its derivatives up to the {}", names(agents), ordinal(*derivatives))
         }
         Subject::Offsets { agents, derivatives } => {

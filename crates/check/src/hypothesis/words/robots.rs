@@ -29,13 +29,13 @@ pub(super) fn words(evidence: &RobotEvidence) -> String {
             }
         }
         RobotEvidence::SingularInertia { agent, q, direction } => format!(
-            "at q = {} the joints of {} move at the rates {} without kinetic energy: a link lacks mass or inertia",
+            "at q = {} the joints of {} move at the rates {} without positive kinetic energy: a link lacks mass or inertia, or has a negative one",
             list(q),
             agent.name,
             list(direction)
         ),
         RobotEvidence::UnknownInertia { agents, q, least } => format!(
-            "links of {} lack mass or inertia of their own, and no bound was found by cutting the joints' full turns; M was seen \
+            "links of {} lack positive mass or inertia of their own, and no bound was found by cutting the joints' full turns; M was seen \
              closest to singular at q = {}, where its smallest eigenvalue is about {}",
             names(agents),
             list(q),

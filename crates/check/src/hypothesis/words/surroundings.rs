@@ -14,9 +14,15 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
             };
             format!("checked exactly when the gains were read; {parameters}")
         }
-        LoopEvidence::Pushes { pushed, torques_for_ever, others_for_ever, springs_for_ever, unbounded, last_end_s } => {
-            pushes(pushed, [torques_for_ever, others_for_ever, springs_for_ever, unbounded], *last_end_s)
-        }
+        LoopEvidence::Pushes {
+            pushed,
+            fading,
+            torques_for_ever,
+            others_for_ever,
+            springs_for_ever,
+            unbounded,
+            last_end_s,
+        } => pushes([pushed, fading], [torques_for_ever, others_for_ever, springs_for_ever, unbounded], *last_end_s),
         LoopEvidence::Applied { limited, enforced } => {
             let mut reasons: Vec<String> = limited.iter().map(|limited| limit(*limited).to_owned()).collect();
             if !enforced.is_empty() {
@@ -50,7 +56,11 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
     }
 }
 
-fn pushes(pushed: &[Named], [torques, others, springs, unbounded]: [&[Named]; 4], last_end_s: f64) -> String {
+fn pushes(
+    [pushed, fading]: [&[Named]; 2],
+    [torques, others, springs, unbounded]: [&[Named]; 4],
+    last_end_s: f64,
+) -> String {
     let mut because = Vec::new();
     if !torques.is_empty() {
         because.push(format!(
@@ -75,7 +85,15 @@ fn pushes(pushed: &[Named], [torques, others, springs, unbounded]: [&[Named]; 4]
             is_or_are(unbounded)
         ));
     }
-    if because.is_empty() {
+    if because.is_empty() && !fading.is_empty() {
+        because.push(format!(
+            "{} pushed by what fades at least like 1/t, so that its square has a finite integral",
+            is_or_are(fading)
+        ));
+        if last_end_s > 0.0 {
+            because.push(format!("what does not fade has ended by t = {} s", seconds(last_end_s)));
+        }
+    } else if because.is_empty() {
         because.push(format!(
             "{} pushed, and the last push has ended by t = {} s",
             is_or_are(pushed),

@@ -39,6 +39,7 @@ use thiserror::Error;
 use self::agent::Agent;
 use self::grid::Nodes;
 use self::responses::{Sums, sums};
+use crate::links::may_time_out;
 use crate::prediction::{Repeats, order};
 
 /// Steps over the fastest time constant, and the most steps of a round.
@@ -143,8 +144,7 @@ impl ReferenceGains {
         if let Some(agent) = setup.agents.iter().find(|agent| !leads(agent)) {
             return Err(NoReferenceGains::Law { agent: agent.name.clone() });
         }
-        let timeout_s = setup.control.as_ref().and_then(|control| control.failures.message_timeout_s);
-        if timeout_s.is_some_and(|timeout_s| timeout_s < network.max_delay_s()) {
+        if may_time_out(setup) {
             return Err(NoReferenceGains::Timeout);
         }
         let end_s = setup.time.end_s;

@@ -228,7 +228,8 @@ impl Payload {
         let shapes = record.shapes.map_or(0, |shapes| shapes.solids.iter().map(Solid::bytes).sum());
         let room = ROOM.saturating_sub(shapes * 3 / 16);
         let budget = (room / (signals + table.largest_dof())).clamp(FEWEST_POINTS, MOST_POINTS);
-        let mut main = Series::new(Grid::new(table.t_s, &break_points, budget), table.t_s);
+        let moving = columns.iter().filter(|column| column.signal != Signal::Estimate).map(|column| &column.values[..]);
+        let mut main = Series::new(Grid::busy(table.t_s, &break_points, budget, moving), table.t_s);
         if main.grid.decimated {
             notes.push(format!(
                 "For display, rows are gathered in buckets, of which the first row is kept, and two more points of each signal: its course up to \

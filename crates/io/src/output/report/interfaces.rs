@@ -1,5 +1,6 @@
 //! What every agent measures and transmits.
 
+use forwardstep_sim::delay::Delay;
 use forwardstep_sim::setup::{AgentSetup, Setup};
 use maud::{Markup, html};
 
@@ -60,13 +61,23 @@ fn names(agents: &[&str]) -> String {
     }
 }
 
-/// Messages of so many numbers, sent at every sample.
+/// Messages of so many numbers, sent in packets or at every sample.
 fn traffic(setup: &Setup, numbers: usize) -> String {
     let bytes = BYTES * numbers;
-    match (&setup.control, numbers) {
-        (_, 0) => "–".to_owned(),
-        (None, _) => format!("{bytes} bytes per message; in continuous time there is no rate"),
-        (Some(control), _) => {
+    if numbers == 0 {
+        return "–".to_owned();
+    }
+    let delays = || setup.network.used_delays().map(|index| &setup.network.delays[index]);
+    let radios = delays().filter(|delay| delay.packets().is_some()).count();
+    let every_s = |delay: &Delay| delay.packets().and_then(|trace| trace.link()).map(|link| link.every_s);
+    let mut each = delays().map(every_s);
+    match (each.next().flatten(), &setup.control) {
+        (Some(every_s), _) if each.all(|other| other == Some(every_s)) => {
+            format!("{} bytes/s: {bytes} bytes every {} s", number(bytes as f64 / every_s), number(every_s))
+        }
+        _ if radios > 0 => format!("{bytes} bytes per message; how often one is sent differs from link to link"),
+        (_, None) => format!("{bytes} bytes per message; in continuous time there is no rate"),
+        (_, Some(control)) => {
             format!("{} bytes/s: {bytes} bytes at every sample", number(bytes as f64 * control.sample_hz))
         }
     }

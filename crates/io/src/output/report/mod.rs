@@ -220,7 +220,9 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>, is_alone: bool, explai
                 }
                 @let (speed, letter) = if turns(record.setup) { ("Angular velocity", "ω") } else { ("Speed", "q̇") };
                 @if recorded(Signal::Reference(0)) {
-                    (card("velocity", &format!("{speed} and reference"), &format!("{letter}, and z dashed"), ""))
+                    // Where agents keep offsets z is the velocity of what they agree on.
+                    @let away = if Gap::keeps_offsets(record.setup) { ", which is of positions less their offsets" } else { "" };
+                    (card("velocity", &format!("{speed} and reference"), &format!("{letter}, and z dashed{away}"), ""))
                 } @else {
                     (card("velocity", speed, letter, ""))
                 }

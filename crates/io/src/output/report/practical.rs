@@ -1,7 +1,7 @@
 //! Practical verdicts beside what was watched: what is said of the loop as it is deployed, not from the paper.
 
 use forwardstep_check::{PracticalAnswer, Source, practical as of_setup};
-use forwardstep_sim::recording::{ClippedSamples, Signal};
+use forwardstep_sim::recording::Signal;
 use maud::{Markup, html};
 
 use super::super::metrics::Metrics;
@@ -80,12 +80,8 @@ fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 @if let Some(bound_w) = bound_w { ", at most " (number(bound_w)) " W with the pushes, the start and σ of this run" }
             }))
         }
-        @if let Some(ClippedSamples { samples, torque, rate }) = record.outcome.statistics.clipped {
-            (fact("Clipped", html! {
-                @if torque + rate == 0 && names::limits_by_itself(setup) { "none of " (samples) " samples by the controllers; what wheels and rotors limit is not counted" }
-                @else if torque + rate == 0 { "none of " (samples) " samples, so the limits changed nothing" }
-                @else { (torque) " by limits of torque and " (rate) " by limits of rate, of " (samples) " samples" }
-            }))
+        @if let Some(words) = record.outcome.statistics.clipped.and_then(|clipped| names::clipped_words(setup, clipped)) {
+            (fact("Clipped", html! { (words) }))
         }
     }
 }

@@ -10,7 +10,7 @@ use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::ending::ending_sentence;
-use super::super::metrics::{Disagreement, Gap, Metrics, coarse_rows};
+use super::super::metrics::{BALANCE_FLOOR_J, Disagreement, Gap, Metrics, balance_whole, coarse_rows};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -160,8 +160,8 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         }
         @if let Some((agent, axis, s)) = last_tracking_error(record) {
             (fact("Tracking error", html! {
-                "|s| is " (quantity(s, &unit_at(setup, Signal::TrackingError, agent, axis))) " at the end ("
-                (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ")"
+                "|s| is " (quantity(s, &unit_at(setup, Signal::TrackingError, agent, axis))) " at the end"
+                @if s > 0.0 { " (" (names::agent_name(setup, agent)) ", " (names::axis_words(setup, agent, axis)) ")" }
             }))
         }
         @if let Some(words) = coarse_rows(setup, record.outcome) { (fact("Rows", html! { (words) })) }
@@ -172,12 +172,23 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         @if let Some(balance) = metrics.balance_residual {
             (fact("Balance", html! {
                 @if balance.relative.is_finite() {
-                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) @if setup.agents[balance.agent].pushes.is_empty() { " of V(0)" } @else { " of the largest V" } " (worst: "
+                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) (of_what(record, balance.agent)) " (worst: "
                 } @else { "V is no longer finite (" }
                 (names::agent_name(setup, balance.agent)) ", t = " (number(balance.t_s)) " s)"
                 small { (BALANCE_WORDS) }
             }))
         }
+    }
+}
+
+/// What the residual of a balance is a part of.
+fn of_what(record: &RunRecord<'_>, agent: usize) -> String {
+    let setup = record.setup;
+    let whole = balance_whole(&Table::new(setup, &record.outcome.recording), agent).unwrap_or(0.0);
+    let name = if setup.agents[agent].pushes.is_empty() { "V(0)" } else { "the largest V" };
+    match whole < BALANCE_FLOOR_J {
+        true => format!(" of {} J, beside which {name}, {} J, is small", number(BALANCE_FLOOR_J), number(whole)),
+        false => format!(" of {name}"),
     }
 }
 

@@ -13,7 +13,7 @@ use forwardstep_sim::quantity::MOST_EVENTS;
 use super::numbers::{bound, rounded_down, rounded_up};
 use crate::hypothesis::evidence::{MOST_HELD, MOST_LEFT};
 use crate::hypothesis::{
-    Answer, Evidence, FollowingEvidence, GraphEvidence, LinkEvidence, LoopEvidence, Named, ReferenceEvidence,
+    Answer, Evidence, FollowingEvidence, GraphEvidence, Inexact, LinkEvidence, LoopEvidence, Named, ReferenceEvidence,
     WeightFault,
 };
 
@@ -267,8 +267,13 @@ fn surroundings(evidence: &LoopEvidence) -> Option<String> {
         LoopEvidence::Sampling { .. } => {
             "continuous control, without `control`: no rate makes the theorem speak of samples".into()
         }
-        LoopEvidence::Measurements(_) => {
-            "measured velocities, without noise and without steps; none of it is in the theorem".into()
+        LoopEvidence::Measurements(inexact) => {
+            let without = inexact.iter().map(|inexact| match inexact {
+                Inexact::Noise => "measurements without `noise`",
+                Inexact::Quantum => "measurements without steps, `quantisation`",
+                Inexact::Filter => "velocities that are measured, not filtered from positions",
+            });
+            without.collect::<Vec<_>>().join("; ")
         }
         LoopEvidence::Friction { .. } => {
             "`friction.smooth`; with dry friction a smaller `width` and estimated friction keep s smaller".into()
