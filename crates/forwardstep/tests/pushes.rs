@@ -141,7 +141,7 @@ fn manipulability_says_in_words_what_a_push_does_and_why_it_cannot() {
         assert!(said.contains(why), "{said}");
     }
     for (arguments, why) in [
-        (&["six-arms"][..], "the graph switches"),
+        (&["six-arms"][..], "`six-arms`: the graph switches"),
         (&["remark-4", "--on", "arm-9"], "no agent is called `arm-9`; there are arm-1, arm-2"),
         (&["remark-4", "--axis", "3"], "there is no axis 3 of arm-1"),
         (&["remark-4", "--lambda=-1"], "must be a number of at least 0"),

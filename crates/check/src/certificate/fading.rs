@@ -22,13 +22,12 @@ struct Fading {
 impl Fading {
     /// By the limit of t f(t), where nothing simpler tells.
     fn part(&mut self, part: Expression, by_parts: bool) -> (Expression, bool) {
-        let is_known = by_parts || self.left == 0;
-        let fades = by_parts
-            || !is_known && {
-                self.left -= 1;
-                matches!(limit(&resolved(&(Expression::variable(0) * part.clone()))), Limit::Near(_))
-            };
-        (part, fades)
+        if by_parts || self.left == 0 {
+            return (part, by_parts);
+        }
+        self.left -= 1;
+        let larger = resolved(&(Expression::variable(0) * part.clone()));
+        (part, matches!(limit(&larger), Limit::Near(_)))
     }
 }
 

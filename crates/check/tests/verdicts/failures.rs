@@ -65,6 +65,9 @@ fn a_link_over_which_everything_is_too_old_is_told_by_its_ends() {
     let swings = |mean_s| Delay::new(Sinusoid { mean_s, amplitude_s: 0.1, period_s: 2.0, phase_rad: 0.0 });
     assert_eq!(said(swings(0.36), Schedule::periodic).0, Answer::Violated);
     assert_eq!(said(swings(0.34), Schedule::periodic).0, Answer::NotShown);
+    // Of a formula this is not asked.
+    let wave = Expression::variable(0).sin_of() * 0.1 + 0.36;
+    assert_eq!(said(Delay::new(BoundedFormula::new(wave, 20.0)), Schedule::periodic).0, Answer::NotShown);
     let radio = |latency_s: f64| {
         let loss = Loss::Never;
         let link =

@@ -55,7 +55,7 @@ pub(crate) fn manipulability(
             let mut setup = scenario.setup.clone();
             setup.agents.iter_mut().for_each(|agent| agent.manipulability = *lambda);
             let transfer =
-                Manipulability::of(&setup, trial.agent, trial.axis).map_err(|error| refuse(&setup, &error))?;
+                Manipulability::of(&setup, trial.agent, trial.axis).map_err(|error| refuse(&scenario, &error))?;
             let theory = transfer.low_frequency();
             if k == 0 && !options.table {
                 head(&scenario, trial, transfer.posture(), console);
@@ -66,7 +66,7 @@ pub(crate) fn manipulability(
             }
             let found = match found {
                 Ok(found) => found,
-                Err(error) if k == 0 || options.table => return Err(refuse(&setup, &error)),
+                Err(error) if k == 0 || options.table => return Err(refuse(&scenario, &error)),
                 // Not every law has λ; without it something has been said already.
                 Err(error) => {
                     console.line(format_args!("  λ = {lambda}: nothing, since {}", names::reason(&setup, &error)));
@@ -118,12 +118,10 @@ fn differs(theory: LowFrequency, found: Measured, trial: Trial) -> Option<&'stat
 }
 
 /// Why there is no transfer, with agents by name.
-#[derive(Debug, Error)]
-#[error("{0}")]
-struct NoTransfer(String);
-
-fn refuse(setup: &Setup, error: &dyn std::error::Error) -> Status {
-    complain(&Plain::new(NoTransfer(names::reason(setup, error))))
+fn refuse(scenario: &Scenario, error: &dyn std::error::Error) -> Status {
+    let said = format!("`{}`: {}", scenario.name, names::reason(&scenario.setup, error));
+    let help = "the transfer is that of a fixed graph with constant weights and delays, and robots under (6)-(7), as in `remark-4`";
+    complain(&Plain::with_help(said, Some(help)))
 }
 
 /// Who is pushed.

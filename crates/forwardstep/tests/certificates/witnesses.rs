@@ -156,10 +156,43 @@ fn a_target_that_swings_ever_wider_is_refuted() {
     // Where the position counts, it is enough.
     let blind = driven("t", "[law.position_only]\n").replace("[1.0, 2.0]", "[1.0, 1.5, 2.0]");
     violated(&blind, "bounded-target", "diverges");
-    assert_eq!(judged(&masses("t"), "bounded-target"), ("holds".to_owned(), "accepted".to_owned()));
+    let holds = ("holds".to_owned(), "accepted".to_owned());
+    assert_eq!(judged(&masses("t"), "bounded-target"), holds);
+    // In linear dynamics of one's own q_d drops out, and not where a protocol holds it against q.
+    let own = |more: &str| {
+        let roots = "[reference.tracking]\nroots_per_s = [1.0, 2.0]\n";
+        masses("t").replace(roots, &format!("[reference.desired]\npolynomial = [1, 2]\nfollows_target = true\n{more}"))
+    };
+    assert_eq!(judged(&own(""), "bounded-target"), holds);
+    let protocol = "nonlinear = \"-0.1*tanh(x - xd)\"\nstable_because = \"it pulls as the rest does\"\n";
+    violated(&own(protocol), "bounded-target", "diverges");
     for target in ["sin(t)", "sin(t)/(1+t)", "t*sin(t)*exp(-t)"] {
         assert_ne!(judged(&masses(target), "bounded-target").0, "violated", "{target}");
     }
+}
+
+/// The edge is one of a phase that comes back, or stays.
+#[test]
+fn a_link_over_which_everything_is_too_old_is_a_witness() {
+    let masses = |delay: &str, switching: &str| {
+        format!(
+            "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = {{ mass_kg = 2, dimension = 1 }}\n\
+             start.position_m = [[0.0], [1.0]]\n[reference.consensus]\nroots_per_s = [1.0, 2.0]\nexchange = \"position\"\n\
+             [control]\nsample_hz = 100\nmessage_timeout_s = 0.25\n[network]\nswitching = \"{switching}\"\ndelay.constant_s = 0.1\n\
+             [[network.phases]]\ndwell_s = 1\nedges = [[\"m-1\", \"m-2\"]]\n[[network.phases]]\ndwell_s = 1\n\
+             edges = [{{ from = \"m-2\", to = \"m-1\", delay.{delay} }}]\n"
+        )
+    };
+    for switching in ["repeat", "once"] {
+        for delay in ["constant_s = 0.3", "packets = { period_s = 0.1, latency_s = 0.26, jitter_s = 0.1, seed = 1 }"] {
+            violated(&masses(delay, switching), "messages-in-time", "older");
+        }
+        assert_eq!(judged(&masses("constant_s = 0.25", switching), "messages-in-time").0, "not shown");
+    }
+    assert_eq!(
+        judged(&masses("constant_s = 0.24", "repeat"), "messages-in-time"),
+        ("holds".to_owned(), "accepted".to_owned())
+    );
 }
 
 /// What has a value in no neighbourhood of rounded numbers, and what is too small where the run begins.

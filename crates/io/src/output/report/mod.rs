@@ -271,9 +271,12 @@ fn network(record: &RunRecord<'_>, timeline: &Timeline<'_>) -> Markup {
                 h3 { "Graphs" }
                 (network::graphs(record.setup, timeline))
             }
-            article.card.plot data-plot="gantt" {
-                div.head { h3 { "Active edges" " " span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
-                div.canvas {}
+            // Of one graph all edges are active from the start to the end.
+            @if record.setup.network.schedule.graphs.len() > 1 {
+                article.card.plot data-plot="gantt" {
+                    div.head { h3 { "Active edges" " " span.by #gantt-by { "sender → receiver, in the sender’s colour" } } }
+                    div.canvas {}
+                }
             }
             article.card.plot data-plot="delay" {
                 div.head { h3 { "Delays" " " span.by { "T(t)" } } div.pick {} }
