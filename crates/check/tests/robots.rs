@@ -357,6 +357,10 @@ fn a_robot_may_travel_where_its_dynamics_are_bounded_wherever_it_is() {
         bounded.requires(),
         "the derivatives of the target of arm-1, which may travel, up to the second are bounded"
     );
+    // One that stays is said to.
+    let swings = tracking(arm(0, &[2.0]), vec![formula(Expression::variable(0).sin_of()), rest_at(0.0)]);
+    let [stays] = &all(&swings, Id::BoundedTarget)[..] else { panic!() };
+    assert_eq!(stays.requires(), "the target of arm-1 and its derivatives up to the second are bounded");
     // A slide that a joint turns has a lever that grows with its travel, and a law without velocities another proof.
     let swung = tree(&[(Revolute, Z, body(1.0)), (Prismatic, X, body(1.0))]);
     assert_eq!(answer(&tracking(swung, vec![rest_at(0.0), travels()]), About::Target), Answer::Violated);
