@@ -32,8 +32,7 @@ impl Fading {
 }
 
 fn is_bounded(part: &Expression) -> bool {
-    let within = late_or_whole(part, Interval { low: 0.0, high: f64::INFINITY });
-    within.low.is_finite() && within.high.is_finite()
+    late_or_whole(part, Interval { low: 0.0, high: f64::INFINITY }).is_finite()
 }
 
 impl Algebra for Fading {

@@ -55,13 +55,13 @@ pub(super) fn check_folder(path: &Path) -> Result<(), Plain<String>> {
 /// work, so that none is lost.
 pub(super) fn may_replace(path: &Path, is_own: impl Fn(BufReader<File>) -> bool) -> Result<(), Plain<String>> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| folder.exists() && !folder.is_dir()) {
-        let said = format!("`{}` exists and is no folder to write `{}` into", shown(folder), shown(path));
-        return Err(Plain::with_help(said, Some("name a folder")));
-    }
     if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        let said = format!("there is no folder `{}` to write `{}` into", shown(folder), shown(path));
-        return Err(Plain::with_help(said, Some("make it first")));
+        let (folder, path, exists) = (shown(folder), shown(path), folder.exists());
+        let (said, help) = match exists {
+            true => (format!("`{folder}` exists and is no folder to write `{path}` into"), "name a folder"),
+            false => (format!("there is no folder `{folder}` to write `{path}` into"), "make it first"),
+        };
+        return Err(Plain::with_help(said, Some(help)));
     }
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => {

@@ -103,7 +103,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     const ends = (values) => {
       const [low, top] = spread([...shown.map((c) => rangeOf(values(c), from, to)), [Infinity, -Infinity]]);
       const far = outliers(shown.map((c) => ({ values: values(c) })));
-      if (far) return linearRange(null, Math.max(low, -far.usual), Math.min(top, far.usual));
+      if (far) return rangeWithin(far.usual)(null, low, top);
       return low <= top ? linearRange(null, low, top) : [-1, 1];
     };
     const [xs, ys] = [ends((c) => c.x), ends((c) => c.y)];
@@ -111,8 +111,7 @@ const drawPlane = (target, [acrossId, upId], height) => {
     // A metre is as long in either direction.
     if (across.unit === up.unit) perX = perY = Math.max(perX, perY);
     const [midX, midY] = [(xs[0] + xs[1]) / 2, (ys[0] + ys[1]) / 2];
-    const near = (pixels) => Math.max(-FAR * width, Math.min(FAR * width, pixels));
-    const to2 = (x, y) => [inner.left + inner.width / 2 + near((x - midX) / perX), inner.top + inner.height / 2 - near((y - midY) / perY)];
+    const to2 = (x, y) => [inner.left + inner.width / 2 + kept(FAR * width, (x - midX) / perX), inner.top + inner.height / 2 - kept(FAR * width, (y - midY) / perY)];
     const [right, bottom] = [inner.left + inner.width, inner.top + inner.height];
     const ticks = (mid, per, length, room, draw) => {
       const step = stepOf(per, room);

@@ -103,7 +103,8 @@ const outliers = (series) => {
   const [usual, largest] = [sizeUpTo(0.95), sizeUpTo(1)];
   return usual > 0 && largest > 100 * usual ? { usual, largest } : null;
 };
-const rangeWithin = (size) => (u, min, max) => linearRange(u, min == null ? min : Math.max(min, -size), max == null ? max : Math.min(max, size));
+const kept = (size, value) => (value == null ? value : Math.max(-size, Math.min(size, value)));
+const rangeWithin = (size) => (u, min, max) => linearRange(u, kept(size, min), kept(size, max));
 
 const clipped = (u, draw) => {
   const { left, top, width, height } = u.bbox;
@@ -325,8 +326,8 @@ const drawPlot = (target, { times, series, log = false, lines = [], height, y = 
     plugins: [...(cursor ? [readout(log)] : []), clockLine()],
   };
   // What is far beyond the axis leaves it as steeply from nearer by: who prints a page may drop a path with ends at 10^35.
-  const near = within ? (v) => v && Math.max(-FAR * within, Math.min(FAR * within, v)) : null;
-  const plot = new uPlot(options, [times, ...series.map((s) => (near ? s.values.map(near) : s.values))], target);
+  const drawn = ({ values }) => (within ? values.map((v) => kept(FAR * within, v)) : values);
+  const plot = new uPlot(options, [times, ...series.map(drawn)], target);
   Object.assign(plot, { besides, unit, whole: series.map((s) => s.values) });
   plots.add(plot);
   return plot;

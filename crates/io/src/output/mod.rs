@@ -73,6 +73,7 @@ pub mod summary;
 mod table;
 mod text;
 mod timeline;
+mod trend;
 mod verdicts;
 
 use std::collections::HashSet;

@@ -10,7 +10,7 @@ use toml::de::DeValue;
 use super::de::{ValueDe, plain};
 use super::fault::Fault;
 use super::kinds::Kinds;
-use super::value_problem::{CHOICE, ValueProblem};
+use super::value_problem::ValueProblem;
 
 impl<'a, 'i> ValueDe<'a, 'i> {
     /// One of `choices`: a text, or a table with a single key.
@@ -41,7 +41,10 @@ impl<'a, 'i> ValueDe<'a, 'i> {
                 let name = plain(key.get_ref()).map_err(|fault| fault.at(&key.span()))?;
                 Choice { key: name, span: key.span(), content: Some(content), kinds }
             }
-            _ => return Err(self.wrong(&format!("{CHOICE}{}", choices.join(", ")))),
+            _ => {
+                let problem = ValueProblem::NotAChoice { found: self.found(), allowed: choices.to_vec() };
+                return Err(Fault::new(problem).at(&self.value.span()));
+            }
         };
         if choices.contains(&choice.key) { Ok(choice) } else { Err(choice.unknown(choices)) }
     }

@@ -93,7 +93,12 @@ pub(super) struct ValueDe<'a, 'i> {
 
 impl<'a, 'i> ValueDe<'a, 'i> {
     pub(super) fn wrong(self, expected: &str) -> Fault {
-        let found = match self.value.get_ref() {
+        Fault::new(ValueProblem::WrongType { found: self.found(), expected: expected.into() }).at(&self.value.span())
+    }
+
+    /// What stands here, for a message.
+    pub(super) fn found(self) -> String {
+        match self.value.get_ref() {
             DeValue::String(text) => quoted(text),
             DeValue::Integer(value) => value.to_string(),
             DeValue::Float(value) => value.as_str().into(),
@@ -101,8 +106,7 @@ impl<'a, 'i> ValueDe<'a, 'i> {
             DeValue::Datetime(value) => format!("the date {value}"),
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
-        };
-        Fault::new(ValueProblem::WrongType { found, expected: expected.into() }).at(&self.value.span())
+        }
     }
 
     fn integer(self, integer: &DeInteger<'_>) -> Result<i64, Fault> {

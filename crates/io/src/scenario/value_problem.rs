@@ -9,9 +9,6 @@ use super::refusal::advice_on_quantity;
 use super::scope::{is_one, nearest_here};
 use crate::wording::{are, choose, count, entry_count, is_slip, nearest, number};
 
-/// What begins the words for a value that is one of several kinds.
-pub(super) const CHOICE: &str = "a choice of ";
-
 /// Why a value has no meaning.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -29,6 +26,14 @@ pub enum ValueProblem {
         found: String,
         /// What should be there.
         expected: String,
+    },
+    /// A value stands where it has to be said first which of several kinds it is.
+    #[error("found {found} where a choice of {} should stand", allowed.join(", "))]
+    NotAChoice {
+        /// What was found.
+        found: String,
+        /// The kinds.
+        allowed: Vec<&'static str>,
     },
     /// A list of fixed length has another.
     #[error("found a list of {found} where {need} are needed")]
@@ -241,7 +246,7 @@ impl ValueProblem {
             ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
-            ValueProblem::WrongType { found, expected } => return of_choice(found, expected),
+            ValueProblem::NotAChoice { found, allowed } => return of_choice(found, allowed),
             ValueProblem::MissingKey { key } => return missing(key).map(str::to_owned),
             ValueProblem::Unreadable { message } if is_too_deep(message) => {
                 "no value of a scenario is a list of lists of lists of lists, or a table nested so deeply".into()
@@ -257,12 +262,11 @@ impl ValueProblem {
 }
 
 /// How a value is written that needs a word for what it is.
-fn of_choice(found: &str, expected: &str) -> Option<String> {
+fn of_choice(found: &str, allowed: &[&str]) -> Option<String> {
     /// What stands under these is a number.
     const OF_NUMBERS: [&str; 4] = ["gain", "constant_s", "saturated", "stops_n"];
-    let choices: Vec<&str> = expected.strip_prefix(CHOICE)?.split(", ").collect();
-    let usual = OF_NUMBERS.into_iter().find(|usual| found.parse::<f64>().is_ok() && choices.contains(usual));
-    let (first, value) = usual.map(|usual| (usual, found)).or(choices.first().map(|first| (*first, "…")))?;
+    let usual = OF_NUMBERS.into_iter().find(|usual| found.parse::<f64>().is_ok() && allowed.contains(usual));
+    let (first, value) = usual.map(|usual| (usual, found)).or(allowed.first().map(|first| (*first, "…")))?;
     Some(format!("say which it is, behind the key and a dot, such as `.{first} = {value}`"))
 }
 

@@ -386,7 +386,7 @@ fn work(s: &Subject<'_>) -> Result<Cell, Cell> {
 fn messages(s: &Subject<'_>) -> Result<Cell, Cell> {
     let links = Link::all(&s.setup().network, &s.run.record.outcome.ending);
     if !s.setup().network.has_edges() {
-        return Err(Cell::none("nobody hears anybody"));
+        return Err(Cell::none("no agent hears another"));
     }
     if links.is_empty() {
         return Err(Cell::none("messages flow continuously; there are no packets to count"));
