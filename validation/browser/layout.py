@@ -6,6 +6,8 @@
 
 import csv
 import io
+import json
+import re
 
 import checks
 from checks import FRAMES, drawn, expect, some, value, waited
@@ -27,6 +29,24 @@ exchange = "position"
 [law.linearising]
 [network]
 edges.ring = {}
+"""
+# Runs away from its target within a part of a second.
+BLOWN = """
+format = 2
+title = "Sampled too slowly"
+time.end_s = 60
+[[agents]]
+name = "mass"
+robot.point_mass = { dimension = 2, mass_kg = 2 }
+start.position_m = [0.5, -0.5]
+target.formulas = ["2*sin(t)", "2*cos(0.7*t)"]
+[reference.tracking]
+roots_per_s = [1.5, 2]
+[law.model_reference]
+filter_per_s = 20
+adaptation_gain = 8
+[control]
+sample_hz = 40
 """
 MEASURED = """
 const box = (part) => document.querySelector(part)?.getBoundingClientRect();
@@ -290,6 +310,20 @@ def exported(browser, page, name):
     expect(leading == [], f"{name}: {leading}, and is heard by nobody")
 
 
+def blown(browser, page, name):
+    """A run that broke down: curves end near their axes, where any reader draws them, and tables have the values."""
+    browser.open(page)
+    drawn(browser)
+    drawings = json.loads(value(browser, "JSON.stringify(s.drawings().map(({ svg }) => svg))"))
+    paths = [float(number) for svg in drawings for path in re.findall(r' d="([^"]*)"', svg) for number in re.findall(r"-?[\d.]+(?:e[+-]?\d+)?", path)]
+    expect(len(paths) > 1000 and max(map(abs, paths)) < 1e7, f"{name}: {len(paths)} coordinates up to {max(map(abs, paths)):.3g} px")
+    _, *rows = csv.reader(io.StringIO(value(browser, "s.table('torque')")))
+    largest = max(abs(float(cell)) for row in rows for cell in row[1:] if cell)
+    expect(largest > 1e20, f"{name}: the largest force in the table is {largest}")
+    plane = next(svg for svg in drawings if ">axis 2 in m<" in svg)
+    expect("10<" not in plane and "×" not in plane, f"{name}: the plane is as large as what blew up")
+
+
 def readouts(browser, page, name):
     """What a plot says under the cursor stays within its card, whatever is pointed at."""
     for width, height in [(1024, 768), (390, 844)]:
@@ -400,6 +434,9 @@ def check(browser, folder):
     balances(browser, "theorem-1", ["V", "V + ∫ dissipation", "error"], "Lyapunov balance")
     zeros(browser, folder.run("remark-4"), "remark-4")
     exported(browser, folder.run("unheard", masses(folder, "unheard", 'edges = [["point-1", "point-2"], ["point-2", "point-1"], ["point-2", "point-3"]]')), "nobody hears one")
+    slow = folder / "slow.toml"
+    slow.write_text(BLOWN)
+    blown(browser, folder.run("blown", slow), "blown")
     one = masses(folder, "one", "edges = []", count=1)
     alone(browser, folder.run("one", one), "one alone")
     browser.open(folder.run("gusts"))
