@@ -261,3 +261,48 @@ impl Law for Says {
         self.law.block(assembly)
     }
 }
+
+/// Its plant has another number of axes than its robot.
+#[derive(Debug)]
+struct Unfit {
+    axes: usize,
+}
+
+impl Law for Unfit {
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law that does not fit", made_for: "tanks" }
+    }
+
+    fn interface(&self, _: &RobotSetup) -> Option<Interface> {
+        Some(Interface::tracking(&["level"]))
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let states = [(Signal::Position, 1)];
+        let plant = VectorField::new(self.axes, states, [(Signal::Torque, 1)], |_, _, dx| dx.fill(0.0));
+        let law = |_: FeedbackInput<'_>, asked: ControllerOutput<'_>| asked.input[0] = 0.0;
+        let balance = |_: Truth<'_, _>, _: FeedbackInput<'_>, _: &[f64]| Balance { value: 0.0, dissipation: 0.0 };
+        let controller = Feedback::new(&plant, [], law, balance);
+        assembly.solo(plant, controller)
+    }
+}
+
+/// Such a plant ran, or panicked when it was sampled.
+#[test]
+fn regress_a_plant_that_does_not_fit_its_robot_is_refused_in_continuous_time_and_sampled() {
+    for text in [TANKS.to_owned(), format!("{TANKS}\n[control]\nsample_hz = 100\n")] {
+        for axes in [0, 2] {
+            let mut setup = read(&text).unwrap().setup;
+            setup.agents[1].law = Arc::new(Unfit { axes });
+            let error = sim::simulate(&setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap_err();
+            assert!(
+                matches!(&error, SetupError::Length { agent, error } if agent == "tank-2" && (error.need, error.got) == (1, axes)),
+                "{error}"
+            );
+        }
+    }
+}

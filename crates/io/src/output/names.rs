@@ -138,7 +138,7 @@ pub fn parameter_name(setup: &Setup, agent: usize, index: usize) -> String {
 }
 
 /// What controllers ask for, in one word and in many: torques about axes, forces along them, or inputs without either.
-pub(crate) fn input_words(setup: &Setup) -> (&'static str, &'static str) {
+pub fn input_words(setup: &Setup) -> (&'static str, &'static str) {
     let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
     let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
     let units: BTreeSet<String> = all.map(|(agent, axis)| unit(setup, agent, Signal::Torque, axis)).collect();
@@ -285,8 +285,11 @@ fn followed(setup: &Setup, agent: usize) -> usize {
 /// The unit of a recorded column, for example `rad/s^2`; `SI` for parameters, whose units differ.
 pub fn unit(setup: &Setup, agent: usize, signal: Signal, axis: usize) -> String {
     let own = axis_unit(setup, agent, axis);
-    // A chain has all of its axes, and all that is recorded of it, in units of its own.
+    // A chain has all of its axes, and all that is recorded of it, in units of its own; but a signal of one's own says what it is in.
     if axis_unit(setup, agent, 0) == Some(AxisUnit::Own) {
+        if let (Signal::Own(_), Unit::Fixed(unit)) = (signal, signal.row().unit) {
+            return unit.into();
+        }
         let derivative = match (signal, signal.row().unit) {
             (Signal::Reference(r), _) => followed(setup, agent) + usize::from(r),
             (Signal::TrackingError, _) => followed(setup, agent),

@@ -19,7 +19,7 @@ use crate::agents::{Adaptive, RobotModel};
 use crate::quantity::{LARGEST, Path, at_least, each, finite, positive, within};
 use crate::recording::Signal;
 use crate::reference::{Desired, ReferenceDynamics};
-use crate::setup::{AgentSetup, Axis, Setup};
+use crate::setup::{AgentSetup, Axis, Exchange, Setup};
 use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
 
@@ -257,7 +257,10 @@ impl<'a> Assembly<'a> {
     /// # Errors
     /// [`SetupError`] when the start, the target or the limits do not suit them.
     pub fn solo<C: Controller>(&self, plant: C::Plant, controller: C) -> Result<Block, SetupError> {
-        let target_len = controller.target_len(plant.axes());
+        let (own, target_len) = (self.agent(), controller.target_len(plant.axes()));
+        if own.target.is_some() && !self.setup.tracks(self.agents[0]) && !C::KNOWS_OFFSETS {
+            return Err(SetupError::NoOffsets { agent: own.name.clone(), law: own.law.words().name });
+        }
         self.alone(Box::new(Joined::new(plant, controller)), target_len)
     }
 
@@ -273,6 +276,13 @@ impl<'a> Assembly<'a> {
             total(&states).saturating_sub(actuators),
             start.q.len() + start.dq.len() + start.rest.len(),
         )?;
+        // What the robot says of itself is what neighbours, rows and messages go by.
+        LengthError::check("the axes of the plant", own.robot.axes.len(), pair.axes())
+            .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
+        let sends_velocity = setup.exchange == Exchange::PositionVelocity && setup.leader() != Some(self.agents[0]);
+        if sends_velocity && own.robot.velocity_len() == 0 {
+            return Err(SetupError::SendsPositionOnly { agent: own.name.clone(), law: own.law.words().name });
+        }
         self.takes_pushes(&mut *pair)?;
         let vectors = blocks
             .iter()
