@@ -368,7 +368,7 @@ fn thm_verdicts_on_pushes_are_given_for_every_kind_that_tracks_or_agrees() {
         assert_eq!(verdict(2.0), (Answer::Holds, "agent is pushed, and the last push has ended by t = 2 s".into()));
         let (answer, because) = verdict(f64::INFINITY);
         assert_eq!(answer, Answer::NotCovered);
-        assert_eq!(because, "agent is pushed for ever: the tracking error does not vanish");
+        assert_eq!(because, "agent is pushed for ever: nothing says that the tracking error vanishes");
         // What is conserved is known of those whose tracking error drops out of it.
         let none = if setup.all_track() { NoPrediction::Targets } else { NoPrediction::Law };
         assert_eq!(predict(&setup).err(), (!conserves).then_some(none));

@@ -390,3 +390,21 @@ fn regress_limits_that_drive_the_robots_instead_of_the_law_are_told() {
     );
     assert!(said.contains("(but controllers sample, which can delay it)"), "{said}");
 }
+
+/// An arm whose estimates leave the truth, which lowers the gain of its loop: at the true ones a mode would grow at 28/s, and a run of any length
+/// converges. What a trial of 20 s contradicted was said of runs that were longer than it.
+#[test]
+fn regress_what_a_trial_contradicts_is_not_said_of_longer_runs() {
+    let folder = folder();
+    let arm = "[[agents]]\nname = \"arm\"\nrobot.planar_arm = { mass_kg = [2, 1.5], length_m = [1, 0.8] }\nstart.position_rad = [0.3, 0.3]\n\
+               target.formulas = [\"0.5\", \"0.1\"]\n[reference.tracking]\nroots_per_s = [1, 1]\n[law.adaptive]\ndamping.gain = 20\n\
+               adaptation_gain = 10\n[goal]\nerror_below = 1e-6\n";
+    for end_s in [21, 200] {
+        let verdicts = checked(&folder, &(head(end_s, 100.0) + arm));
+        let whole = verdicts.iter().find(|verdict| verdict["id"] == "whole-loop").unwrap();
+        assert_eq!(whole["answer"], "not shown", "{whole}");
+        let said = whole.to_string();
+        assert!(said.contains("though a trial of 20.48 s does not run away"), "{said}");
+    }
+    forwardstep(&folder, &["run", "loop.toml"]).success();
+}

@@ -236,8 +236,9 @@ fn whole(found: &WholeLoop) -> String {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
         }
         (Some(rate), _, _) if found.is_contradicted(rate) => format!(
-            "a mode grows at {}/s in some of these states, though a trial to the end of the run does not run away; {advice}",
-            rounded(rate)
+            "a mode grows at {}/s in some of these states, though a trial of {} s does not run away; {advice}",
+            rounded(rate),
+            rounded(found.trial.lasted_s)
         ),
         (Some(rate), _, _) if found.answer() == PracticalAnswer::NotShown && found.amplified().is_none() => format!(
             "if the largest weights stayed for ever a mode would grow at {}/s, and the network changes; sample faster, filter less, or \

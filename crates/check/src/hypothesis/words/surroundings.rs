@@ -70,7 +70,7 @@ fn pushes(
         ));
     }
     if !others.is_empty() {
-        because.push(format!("{} pushed for ever: the tracking error does not vanish", is_or_are(others)));
+        because.push(format!("{} pushed for ever: nothing says that the tracking error vanishes", is_or_are(others)));
     }
     if !springs.is_empty() {
         because.push(format!(

@@ -27,7 +27,7 @@
 //! to rest, and its last state counts; along the motion of a target it is the mean of r, an estimate as for any loop that changes with
 //! time. Agents under other laws are looked at again after some periods by themselves, over all of them where few numbers follow a target; a
 //! trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its largest weights;
-//! what grows then is not shown to, nor is what would have been seen in a trial that lasts to the end of the run. A loop that is bad at
+//! what grows then is not shown to, nor is what would have been seen in the time of a trial. A loop that is bad at
 //! the start alone is left before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last
 //! state is looked at again with those that may be reached: at their upper bounds, or without bounds as they start. A loop that grows
 //! there may do so after it has drifted, unless the ideal one does too, which adaptation keeps from it. All of it but the trial is without
@@ -216,7 +216,7 @@ impl WholeLoop {
 
     /// Whether what grows so fast would have been seen in the trial, from whatever it begins with.
     pub(super) fn is_contradicted(&self, rate_per_s: f64) -> bool {
-        self.trial.lasted && rate_per_s * self.end_s > SEEN
+        rate_per_s * self.trial.lasted_s > SEEN
     }
 
     /// How fast the worst mode grows by sampling in the long run, 1/s, if it does.

@@ -23,8 +23,8 @@ const LONGER: f64 = 1.25;
 pub struct Trial {
     /// When the agents have run away, s, though those of the ideal loop have not by then.
     pub lost_s: Option<f64>,
-    /// Whether they have not until the end of the run.
-    pub lasted: bool,
+    /// For how long they have not, s.
+    pub lasted_s: f64,
 }
 
 impl Trial {
@@ -34,14 +34,14 @@ impl Trial {
         let until = |end_s: f64| end_s.min(setup.time.end_s);
         let end_s = until(PERIODS * period_s);
         let End::Lost { t_s } = tried(setup, end_s, WORK)? else {
-            return Some(Trial { lost_s: None, lasted: end_s == setup.time.end_s });
+            return Some(Trial { lost_s: None, lasted_s: end_s });
         };
         // What breaks down in continuous time may do so a little later. What is lost with samples that are faster may last with some that are faster
         // still: the loops that sampling spoils soonest are those that need the fastest.
         let ideal = |faster: u32| tried(&ideal(setup, faster)?, until(LONGER * t_s), f64::from(FASTER) * WORK);
         let first = ideal(FASTER)?;
         let lasts = first == End::Lasts || STILL_FASTER.into_iter().map_while(ideal).any(|end| end == End::Lasts);
-        Some(Trial { lost_s: lasts.then_some(t_s), lasted: false })
+        Some(Trial { lost_s: lasts.then_some(t_s), lasted_s: 0.0 })
     }
 }
 
