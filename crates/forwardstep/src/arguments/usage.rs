@@ -21,6 +21,9 @@ pub(crate) fn with_tips(mut error: clap::Error) -> clap::Error {
                 _ => None,
             }
         }
+        ErrorKind::TooFewValues if is_of_runs(&error) => {
+            Some("name two runs or scenarios at least; `forwardstep report RUN` makes the page of one".to_owned())
+        }
         ErrorKind::InvalidUtf8 => Some(
             "names of files are given in Unicode; go into the folder (`cd`) whose name is none, or rename the file"
                 .to_owned(),
@@ -37,17 +40,28 @@ pub(crate) fn with_tips(mut error: clap::Error) -> clap::Error {
 fn tip_for_unknown(word: &str) -> Option<String> {
     match word.strip_prefix("--") {
         Some(name) => nearest_here(name),
-        None => word.parse::<f64>().ok().map(|_| "no number here is negative".to_owned()),
+        None if word.parse::<f64>().is_ok() => Some("no number here is negative".to_owned()),
+        None => is_scenario(word).then(|| {
+            "one scenario or run at a time; `forwardstep compare A B` sets several side by side, and a loop of the shell takes one after the other"
+                .to_owned()
+        }),
     }
+}
+
+/// Whether runs or scenarios are what there are too few of.
+fn is_of_runs(error: &clap::Error) -> bool {
+    matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(what)) if what.contains("RUN|SCENARIO"))
+}
+
+fn is_scenario(word: &str) -> bool {
+    let path = Path::new(word);
+    shipped_scenario(word).is_some() || path.extension().is_some_and(|end| end == "toml") || path.is_dir()
 }
 
 /// What to type for a scenario without a command.
 fn runs(word: &str) -> Option<String> {
-    let path = Path::new(word);
-    let is_scenario =
-        shipped_scenario(word).is_some() || path.extension().is_some_and(|end| end == "toml") || path.is_dir();
     let pasted = for_shell(&shown(word).to_string());
-    is_scenario
+    is_scenario(word)
         .then(|| format!("a scenario needs a command: `forwardstep run {pasted}`, or `forwardstep check {pasted}`"))
 }
 
@@ -61,6 +75,7 @@ mod tests {
             ("--obstacles", "joints keep to the position limits"),
             ("--floating-base", "`robot.vehicle`"),
             ("-1", "negative"),
+            ("own.toml", "compare A B"),
         ] {
             assert!(tip_for_unknown(word).is_some_and(|tip| tip.contains(part)), "{word}: {:?}", tip_for_unknown(word));
         }

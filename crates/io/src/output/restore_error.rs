@@ -9,6 +9,7 @@ use forwardstep_sim::SetupError;
 use miette::Diagnostic;
 use thiserror::Error;
 
+use super::comparison;
 use super::error::OutputError;
 use super::journal::JournalError;
 use super::stored_table::ParquetProblem;
@@ -201,6 +202,9 @@ impl RestoreError {
             }
             RestoreError::NoFolder { .. } | RestoreError::NotAFolder { .. } => {
                 "give the folder of a run, such as `forwardstep-runs/six-arms`".into()
+            }
+            RestoreError::NotARun { path, .. } if path.join(comparison::PAGE).is_file() => {
+                "it is a comparison: give one of the runs that it compares".into()
             }
             RestoreError::NotARun { missing: "summary.json", .. } => {
                 format!("it is written last: the run was not finished, or the file was removed; {AGAIN}")

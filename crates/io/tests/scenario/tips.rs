@@ -57,7 +57,7 @@ const TIP_CASES: &[Case] = &[
     ("estimate_start.scaled = 0.8", "estimate_start = \"none\"",
         "test.toml:18:18: unknown choice `none`", "choose one of `zero`, `true`, `scaled`, `given`"),
     ("estimate_start.scaled = 0.8", "estimate_start.scaled = \"0.8\"",
-        "test.toml:18:25: found \"0.8\" where a number should stand", ""),
+        "test.toml:18:25: found \"0.8\" where a number should stand", "write 0.8, without quotes"),
     ("task_gain = 200", "task_gain = 0",
         "test.toml:19:13: `task_gain` is 0, but must be positive", ""),
     ("task_gain = 200", "task_gain = [1, 2]",
