@@ -165,6 +165,13 @@ def check(browser, folder):
         if name == "hostile":
             expect(HOSTILE in value(browser, "document.querySelector('.scene .by').textContent"), "a title is not told as it is")
             expect(value(browser, "document.querySelectorAll('main img').length") == 0, "a title became an element")
+    # A run with none of what the others share is named where its curves are missing.
+    page, _ = compare("odd", "theorem-2", "first-order", "double-integrators")
+    browser.screen(1400, 900)
+    browser.open(page)
+    said = value(browser, "document.getElementById('alone')?.textContent ?? ''")
+    drawn_ids = value(browser, "[...document.querySelectorAll('.card.plot')].map((card) => card.dataset.plot)")
+    expect("position" in drawn_ids and "double-integrators" in said, f"odd: plots {drawn_ids}, and {said!r}")
 
 
 if __name__ == "__main__":

@@ -118,6 +118,21 @@ fn shipped_scenarios_are_rebuilt_byte_for_byte() {
     }
 }
 
+/// The page had a leader and thrusts, and the files for print had neither.
+#[test]
+fn regress_figures_for_print_have_the_leader_and_the_thrust() {
+    let folder = folder();
+    let figure = |scenario: &str, name: &str| {
+        forwardstep(&folder, &["run", scenario, "--out", scenario, "--force"]);
+        fs::read_to_string(folder.path().join(scenario).join("plots").join(name)).unwrap()
+    };
+    let led = figure("theorem-8", "positions.svg");
+    assert!(led.contains("leader, dashed") && led.matches("polyline").count() > 40, "dashes are lines of their own");
+    let flown = figure("theorem-4", "torques.svg");
+    assert!(flown.contains("thrust") && flown.contains("in N") && !flown.contains("Nothing was recorded"));
+    assert!(!figure("theorem-1", "torques.svg").contains("thrust"));
+}
+
 #[test]
 fn what_was_predicted_stands_beside_what_was_observed() {
     let folder = folder();

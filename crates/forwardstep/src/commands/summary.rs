@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Injection;
-use forwardstep::io::output::names::{agent_name, clipped_words, gap_unit, torque_words, unit};
+use forwardstep::io::output::names::{agent_name, clipped_words, gap_unit, input_words, torque_words, unit};
 use forwardstep::io::output::{
     Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Load, Metrics, RunRecord, WatchedMargin,
     coarse_rows,
@@ -38,6 +38,7 @@ pub(crate) fn summary(
     files: &[PathBuf],
 ) -> String {
     let RunRecord { setup, outcome, .. } = record;
+    let peak_of_inputs = format!("peak {}", input_words(setup).0);
     let mut rows: Vec<(&str, String)> = vec![("verdict", verdict(record))];
     if let Some(Conclusion { sentence, advice, .. }) = Conclusion::of(record, metrics) {
         rows.push(("in words", sentence));
@@ -70,7 +71,7 @@ pub(crate) fn summary(
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
         let (agent, axis) = (agent_name(setup, peak.agent), torque_words(setup, peak.agent, peak.axis));
         let value = with_unit(peak.value.abs(), &unit);
-        rows.push(("peak torque", format!("{value}, {agent}, {axis} at {} s", instant(peak.t_s))));
+        rows.push((&peak_of_inputs, format!("{value}, {agent}, {axis} at {} s", instant(peak.t_s))));
     }
     rows.extend(loads(setup, &metrics.peak_loads));
     if !metrics.limits_reached.is_empty() {

@@ -146,3 +146,85 @@ fn regress_help_that_cannot_be_written_is_an_error_and_a_name_that_is_no_text_ha
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.code() == Some(2) && said.contains("rename the file"), "{said}");
 }
+
+/// What grows without end breaks down for want of memory, or of small enough steps; neither is what is to be mended.
+#[test]
+fn regress_a_run_that_broke_down_because_agents_drive_each_other_apart_says_that() {
+    let folder = folder();
+    let text = r#"format = 2
+time.end_s = 60
+solver.memory_budget_bytes = 2000000
+[[agents]]
+name = "agent"
+count = 2
+robot.chain = { order = 2, chi = "x^3", psi = "2 + cos(x)" }
+start.position = [[1.0], [-0.5]]
+[reference.desired]
+polynomial = { integrators = 1, roots_per_s = [1, 2] }
+coupling_polynomial = [1]
+[law.linearising]
+gain_per_s = 2
+[network]
+weight = 60
+delay.constant_s = 0.5
+edges.ring = {}
+"#;
+    fs::write(folder.path().join("own.toml"), text).unwrap();
+    let run = forwardstep(&folder, &["run", "own.toml", "--out", "own"]).code(3);
+    let said = stdout(&run);
+    assert!(stderr(&run).contains(" bytes, and more as steps become shorter, where"), "{}", stderr(&run));
+    assert!(
+        said.contains("driven apart: axis 1, ") && said.contains(" apart (agent-1, agent-2), 1.5 at the"),
+        "{said}"
+    );
+    assert!(said.contains("to change             not shown [desired-dynamics]"), "{said}");
+    assert!(fs::read_to_string(folder.path().join("own/report.html")).unwrap().contains("driven apart: axis 1, "));
+}
+
+/// Two masses in a tenth of a second are as far apart without s: nothing is to be mended about the robots.
+#[test]
+fn regress_robots_are_not_blamed_for_what_the_design_leaves_as_well() {
+    let folder = folder();
+    let text = r#"format = 2
+time.end_s = 0.1
+[[agents]]
+name = "mass"
+count = 2
+robot.point_mass = { dimension = 1, mass_kg = 2 }
+start.position_m = [[0], [1]]
+[reference.consensus]
+roots_per_s = [1, 2]
+exchange = "position"
+[network]
+delay.constant_s = 0.2
+edges.ring = {}
+[goal]
+disagreement_below = 1e-3
+"#;
+    fs::write(folder.path().join("two.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "two.toml"]).code(1));
+    assert!(said.contains("not agreed: axis 1, 1 m apart") && said.contains("the design is slow"), "{said}");
+    assert!(!said.contains("do not follow their references"), "{said}");
+}
+
+#[test]
+fn one_file_too_many_or_too_few_and_numbers_that_are_none_have_a_next_step() {
+    let folder = folder();
+    fs::write(folder.path().join("own.toml"), QUICK).unwrap();
+    let said = |arguments: &[&str]| stderr(&forwardstep(&folder, arguments).code(2));
+    assert!(
+        said(&["run", "own.toml", "theorem-1"])
+            .contains("tip: one scenario or run at a time; `forwardstep compare A B`")
+    );
+    assert!(said(&["compare", "own.toml"]).contains("tip: name two runs or scenarios at least"));
+    for (found, help) in [("\"30\"", "write 30, without quotes"), ("\"soon\"", "where a number should stand")] {
+        fs::write(folder.path().join("text.toml"), QUICK.replace("end_s = 30", &format!("end_s = {found}"))).unwrap();
+        let said = said(&["check", "text.toml"]);
+        assert!(said.contains(help) && said.contains("without quotes") == help.contains("without"), "{said}");
+    }
+    fs::write(folder.path().join("count.toml"), QUICK.replace("count = 2", "count = 2.0")).unwrap();
+    assert!(said(&["check", "count.toml"]).contains("help: write 2\n"));
+    forwardstep(&folder, &["compare", "own.toml", "theorem-1", "--out", "both"]);
+    let both = said(&["report", "both"]);
+    assert!(both.contains("it is a comparison: give one of the runs"), "{both}");
+}

@@ -87,6 +87,8 @@ const sideCards = quantityIds.flatMap((id) => {
     if (!isMixed || !vanishing.includes(id)) alone.push(`${all[0].quantity.title} (${all.map(({ run }) => run.name).join(", ")})`);
     return [];
   }
+  const without = all.filter(({ quantity }) => !quantity.entries.some((e) => common.includes(e.name)));
+  if (without.length) alone.push(`${all[0].quantity.title} (${without.map(({ run }) => run.name).join(", ")})`);
   const card = element("article", { className: "card plot" });
   card.dataset.plot = id;
   const unit = element("span", { className: "unit" });
@@ -97,7 +99,7 @@ const sideCards = quantityIds.flatMap((id) => {
   return [{ id, all, common, card, unit, pick, picked, canvas, chosen: common[0], log: all[0].quantity.log, plot: null }];
 });
 
-if (alone.length) cardsPlace.after(element("p", { className: "note", id: "alone", textContent: `On the pages of the runs alone, since no two of them have it under one name and in one unit: ${alone.join("; ")}.` }));
+if (alone.length) cardsPlace.after(element("p", { className: "note", id: "alone", textContent: `On the pages of the runs alone, since no other has it under the same name and in the same unit: ${alone.join("; ")}.` }));
 
 const fillCard = (mine) => {
   if (mine.plot) removePlot(mine.plot);

@@ -222,7 +222,7 @@ const graphIn = (place) => {
       return flights.map(({ share, lost }) => ({ from, lost, share, x: p.x + share * (q.x - p.x), y: p.y + share * (q.y - p.y) }));
     });
     dots.replaceChildren(...flying.map(({ from, lost, share, x, y }) =>
-      svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: 3, class: `flight a${from}${lost ? " lost" : ""}`, opacity: lost ? (1 - share).toFixed(2) : 1 })));
+      svg("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: Math.min(3, 0.6 * r), class: `flight a${from}${lost ? " lost" : ""}`, opacity: lost ? (1 - share).toFixed(2) : 1 })));
     if (edges.length <= 200) edges.forEach(({ share }, k) => arrows.children[k]?.setAttribute("opacity", (1 - 0.3 * share).toFixed(2)));
   };
   laidOut();

@@ -13,7 +13,8 @@ const aim = (nodes) => {
   const box = boxOf(here);
   const middle = [0, 1, 2].map((k) => 0.5 * (box.low[k] + box.high[k]));
   const far = 0.9 * world.spread;
-  const points = [-far, far].flatMap((x) => [-far, far].map((y) => add(middle, [x, y, 0])));
+  const tall = bodies.some((b) => b.kind === "vehicle") ? 0.5 * (box.high[2] - box.low[2]) + THRUST * world.symbol : 0;
+  const points = [-far, far].flatMap((x) => [-far, far].flatMap((y) => [0, tall].map((z) => add(middle, [x, y, z]))));
   return { middle, points, extent: world.spread };
 };
 
@@ -169,9 +170,12 @@ const drawEdges = (ctx, see, frame, colours, heard) => {
     const far = Math.hypot(b.x - a.x, b.y - a.y);
     if (far < 16) continue;
     const [ux, uy] = [(b.x - a.x) / far, (b.y - a.y) / far];
-    const bend = Math.min(26, 0.13 * far);
+    // Beside the axis they bend away from its labels, those of the other direction farther.
+    const away = charted && uy > 0 && Math.min(a.x, b.x) < see.box.left + 26 ? -1.8 : 1;
+    const bend = away * Math.min(26, 0.13 * far);
     const inset = Math.min(13, 0.3 * far);
-    const [p, q] = [{ x: a.x + inset * ux - 3 * uy, y: a.y + inset * uy + 3 * ux }, { x: b.x - inset * ux - 3 * uy, y: b.y - inset * uy + 3 * ux }];
+    const beside = 3 * Math.sign(away);
+    const [p, q] = [{ x: a.x + inset * ux - beside * uy, y: a.y + inset * uy + beside * ux }, { x: b.x - inset * ux - beside * uy, y: b.y - inset * uy + beside * ux }];
     const c = { x: 0.5 * (a.x + b.x) - bend * uy, y: 0.5 * (a.y + b.y) + bend * ux };
     ctx.globalAlpha = many ? Math.max(0.02, 0.12 * Math.min(1, 400 / heard.edges.length)) : 0.95 - 0.25 * share;
     ctx.strokeStyle = ctx.fillStyle = colours.agents[from];

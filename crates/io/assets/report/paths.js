@@ -212,7 +212,8 @@ const drawPaths = (target, height) => {
       if (!c.wanted && shown.length <= 24) strokeLine(pen, see, { points: [p, [p[0], p[1], floor]], width: 1, alpha: 0.6 }, own);
       pen.beginPath();
       pen.arc(x, y, c.wanted ? 3 : shown.length > 100 ? 2 : 5, 0, 2 * Math.PI);
-      Object.assign(pen, { fillStyle: own, strokeStyle: colour("--surface"), lineWidth: 1.5 });
+      // An edge tells it from the disc where a path ends.
+      Object.assign(pen, { fillStyle: own, strokeStyle: colour("--ink"), lineWidth: 1.2 });
       pen.fill();
       pen.stroke();
     }

@@ -187,7 +187,8 @@ const drawPlane = (target, [acrossId, upId], height) => {
       const [px, py] = seen(x, y);
       ctx.beginPath();
       ctx.arc(px, py, shown.length > 100 ? 2 : 5, 0, 2 * Math.PI);
-      Object.assign(ctx, { fillStyle: c.colour, strokeStyle: colour("--surface"), lineWidth: shown.length > 100 ? 0.5 : 1.5 });
+      // An edge tells it from the disc where a curve ends.
+      Object.assign(ctx, { fillStyle: c.colour, strokeStyle: colour("--ink"), lineWidth: shown.length > 100 ? 0.5 : 1.2 });
       ctx.fill();
       ctx.stroke();
     }

@@ -150,14 +150,10 @@ const drawLines = (u, lines) =>
       ctx.stroke();
       const right = u.bbox.left + u.bbox.width - 5 * scale;
       const baseline = y + (y - u.bbox.top < 18 * scale ? 14 : -5) * scale;
-      const wide = ctx.measureText(label).width + 6 * scale;
-      ctx.globalAlpha = 0.8;
-      ctx.fillStyle = colour("--surface");
-      ctx.fillRect(right + 3 * scale - wide, baseline - 10 * scale, wide, 13 * scale);
-      ctx.globalAlpha = 1;
-      ctx.fillStyle = colour("--soft");
-      ctx.textAlign = "right";
-      ctx.textBaseline = "alphabetic";
+      ctx.setLineDash([]);
+      // A rim around the letters: a box would hide the curves behind it.
+      Object.assign(ctx, { textAlign: "right", textBaseline: "alphabetic", lineJoin: "round", lineWidth: 3 * scale, strokeStyle: colour("--surface"), fillStyle: colour("--soft") });
+      ctx.strokeText(label, right, baseline);
       ctx.fillText(label, right, baseline);
     }
   });

@@ -133,6 +133,8 @@ const paths = (of) => {
 const trailOf = paths(trailPoint);
 const targetPath = paths(targetPoint);
 
+// The largest thrust of a vehicle, in sizes of what stands for it.
+const THRUST = 2.4;
 // How large the world is, and so what has no size of its own.
 const world = (() => {
   const points = bodies.flatMap((body) => [...keptPoints(trailOf(body)), ...(body.target.length && body.kind !== "spacecraft" ? targetPath(body) : [])]);
@@ -159,7 +161,11 @@ const world = (() => {
   }
   spread = Math.max(spread, index.frame?.spread ?? 0);
   const follows = bodies.length > 1 && spread > 1e-9 * extent && spread < 0.4 * extent;
-  return { points: shown, low, high, extent, spread, follows, symbol: follows ? 0.14 * spread : 0.045 * extent };
+  const symbol = follows ? 0.14 * spread : 0.045 * extent;
+  // Rotors and thrust reach beyond where a vehicle is.
+  const flown = bodies.filter((b) => b.kind === "vehicle").flatMap((body) => keptPoints(trailOf(body)).filter((p, k) => k % 8 === 0 && p && finite(p)));
+  const reached = flown.flatMap((p) => [[0, 0, THRUST * symbol], [1.2 * symbol, 0, 0], [-1.2 * symbol, 0, 0]].map((by) => add(p, by)));
+  return { points: [...shown, ...reached], low, high, extent, spread, follows, symbol };
 })();
 
 const HULL = [[-0.5, -0.2], [0.15, -0.2], [0.5, 0], [0.15, 0.2], [-0.5, 0.2]];
@@ -229,7 +235,7 @@ const drawBody = (body, now, into) => {
     solid(arm([0, 0, 0]), arm([0.35, 0, 0]), 0.13 * world.symbol);
     if (body.thrust !== null) {
       const share = data.at("scene", body.thrust, place) / (mostOf(body.thrust) || 1);
-      into.arrows.push({ from: at, to: add(at, scaled(normal, 2.4 * share * world.symbol)), colour, width: 2 });
+      into.arrows.push({ from: at, to: add(at, scaled(normal, THRUST * share * world.symbol)), colour, width: 2 });
     }
   } else if (body.kind === "spacecraft") {
     drawSpacecraft(body, q, place, at, solid, line, into, colour);
@@ -263,7 +269,11 @@ const drawSpacecraft = (body, q, place, at, solid, line, into, colour) => {
     const axis = [0, 1, 2].map((i) => (i === k ? 1 : 0));
     solid(at, p(...axis), 0.022);
     into.words.push({ at: p(...scaled(axis, 1.1)), text: name });
-    if (wanted) line([at, add(at, turned(wanted, scaled(axis, 1.2)))], { dash: [4, 3], width: 1.6, ink: true });
+    if (!wanted) return;
+    const to = (far) => add(at, turned(wanted, scaled(axis, far)));
+    line([at, to(1.2)], { dash: [4, 3], width: 1.6, ink: true });
+    // Where the two are one the letter is there.
+    if (Math.hypot(...minusVector(to(1), p(...axis))) > 0.25) into.words.push({ at: to(1.28), text: name });
   });
   const most = Math.max(1e-12, ...body.wheels.map(mostOf));
   body.wheel_axes.forEach((axis, k) => {

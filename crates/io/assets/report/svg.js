@@ -90,13 +90,16 @@ const namesBelow = (pen, named, width, top) => {
   for (const { label, colour: own, dash } of named) {
     const wide = 26 + pen.measureText(label).width;
     if (x > 14 && x + wide > width - 14) [x, y] = [14, y + 17];
-    Object.assign(pen, { strokeStyle: own, lineWidth: 2 });
-    pen.setLineDash(dash ?? []);
-    pen.beginPath();
-    pen.moveTo(x, y - 4);
-    pen.lineTo(x + 16, y - 4);
-    pen.stroke();
-    pen.setLineDash([]);
+    // A canvas knows no colour that is none.
+    if (own !== "none") {
+      Object.assign(pen, { strokeStyle: own, lineWidth: 2 });
+      pen.setLineDash(dash ?? []);
+      pen.beginPath();
+      pen.moveTo(x, y - 4);
+      pen.lineTo(x + 16, y - 4);
+      pen.stroke();
+      pen.setLineDash([]);
+    }
     pen.fillStyle = colour("--soft");
     pen.fillText(label, x + 21, y);
     x += wide + 12;

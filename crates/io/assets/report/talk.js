@@ -5,6 +5,7 @@ const talk = (() => {
   const SPACE = { left: EDGE, top: 138, width: 740, height: 514 };
   const PLOT = { left: 806, top: 160, width: 440, height: 236 };
   const HEADING = "600 15px";
+  const NAME_ROWS = 2;
   const FRAMES_PER_S = 25;
   const PICTURES_PER_S = 10;
   const part = (id) => document.getElementById(id);
@@ -80,16 +81,26 @@ const talk = (() => {
       inside(pen, PLOT, () => drawAgain(plot, pen, 0));
       const named = namesOf(plot);
       Object.assign(pen, { textAlign: "start", textBaseline: "alphabetic" });
-      inside(pen, PLOT, () => (y = PLOT.top + 16 + namesBelow(pen, named.length > 9 ? [...named.slice(0, 8), { label: `and ${named.length - 8} more`, colour: "none" }] : named, PLOT.width, PLOT.height + 20)));
+      const some = (count) => (count < named.length ? [...named.slice(0, count), { label: `and ${named.length - count} more`, colour: "none" }] : named);
+      // As many as leave room for figures and the verdict.
+      let count = named.length > 9 ? 8 : named.length;
+      while (count > 1 && namesBelow(svgPen(0, 0, measuring()), some(count), PLOT.width, 0) > NAME_ROWS * 17) count -= 1;
+      inside(pen, PLOT, () => (y = PLOT.top + 16 + namesBelow(pen, some(count), PLOT.width, PLOT.height + 20)));
     }
     const figures = [...document.querySelectorAll(".verdict .figures div")].slice(0, 6);
     y += 26;
     figures.forEach((figure, k) => {
       const left = PLOT.left + (k % 2) * (PLOT.width / 2);
       const top = y + Math.floor(k / 2) * 46;
+      const width = PLOT.width / 2 - 12;
       const of = (tag) => figure.querySelector(tag)?.textContent.replace(/\s+/g, " ").trim() ?? "";
-      written(pen, of("dd"), { font: "600 19px", colour: "--ink", left, top, width: PLOT.width / 2 - 12, line: 20, most: 1 });
-      written(pen, of("dt"), { font: "12.5px", colour: "--muted", left, top: top + 17, width: PLOT.width / 2 - 12, line: 16, most: 1 });
+      // A unit that is cut is another unit.
+      let size = 19;
+      const font = () => `600 ${size}px`;
+      const wide = () => ((pen.font = `${font()} ${FONT}`), pen.measureText(of("dd")).width);
+      while (size > 11 && wide() > width) size -= 1;
+      written(pen, of("dd"), { font: font(), colour: "--ink", left, top, width, line: 20, most: 1 });
+      written(pen, of("dt"), { font: "12.5px", colour: "--muted", left, top: top + 17, width, line: 16, most: 1 });
     });
     y += Math.ceil(figures.length / 2) * 46 + 2;
     const room = Math.floor((SPACE.top + SPACE.height + 14 - y) / 19) + 1;

@@ -8,7 +8,7 @@ use forwardstep_sim::setup::Setup;
 use super::disagreement::{Disagreement, DisagreementSeries, Gap, greater};
 use super::metrics::Metrics;
 use super::names::{agent_name, gap_unit_on, gap_words, unit};
-use super::prediction::{PredictedCourse, PredictedRate, Predictions};
+use super::prediction::{PredictedRate, Predictions};
 use super::record::RunRecord;
 use super::table::Table;
 use super::trend::{Trend, is_slowing, lately};
@@ -25,6 +25,8 @@ const LONGEST: f64 = 100.0;
 const ALONE: f64 = 2.0;
 /// The same where there is another reason.
 const MUCH: f64 = 0.05;
+/// A gap that is so many times what it was has not stayed: steps became short, or numbers too large, because it grew.
+const DRIVEN_APART: f64 = 1e3;
 /// s at the end, in 1/s of the gap, counts as left over above this.
 pub(super) const LEFT_OVER: f64 = 1e-3;
 
@@ -40,19 +42,25 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// `None` for a run that broke down or was expected to diverge, and where nothing can be compared.
+    /// `None` for a run that was expected to diverge, for one that broke down without having been driven apart, and where nothing can be compared.
     pub fn of(record: &RunRecord<'_>, metrics: &Metrics) -> Option<Conclusion> {
         let bound = match record.goal.map(|outcome| outcome.goal) {
             Some(Goal::ExpectDiverges) => return None,
             goal => goal.and_then(|goal| goal.bound()),
         };
         let Disagreement::Measured { last, largest, .. } = metrics.disagreement else { return None };
-        if matches!(record.outcome.ending, Ending::BrokeDown(_)) {
-            return None;
-        };
         let table = Table::new(record.setup, &record.outcome.recording);
         let series = DisagreementSeries::of_table(&table).ok()?;
         let end = End::of(&table, &series)?;
+        if matches!(record.outcome.ending, Ending::BrokeDown(_)) {
+            let before = metrics.disagreement.initial()?;
+            let grew = before > 0.0 && last > DRIVEN_APART * before && last.is_finite();
+            return grew.then(|| Conclusion {
+                reached: false,
+                sentence: end.driven_apart(record.setup, before),
+                advice: hypotheses(record.verdicts),
+            });
+        }
         let bound = bound.unwrap_or(VANISHED * largest);
         // What was nothing from the start has vanished as well.
         let t_s = &record.outcome.recording.t_s;
@@ -150,6 +158,25 @@ impl End {
         Some(End { kind, axis, agents: agents_named, gap, led, speed })
     }
 
+    /// What became of a gap before a run broke down.
+    fn driven_apart(&self, setup: &Setup, before: f64) -> String {
+        let End { kind, axis, agents, gap, .. } = self;
+        let unit = gap_unit_on(setup, agents.first().copied().unwrap_or(0), *axis);
+        let (done, how) = match (kind, setup.following().is_some()) {
+            (Gap::Disagreement, _) => ("driven apart", "apart"),
+            (Gap::Error, true) => ("driven away from the leader", "off"),
+            (Gap::Error, false) => ("driven away from the target", "off"),
+        };
+        let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
+        let size = format!("{} {unit}", about(*gap)).trim_end().to_owned();
+        format!(
+            "{done}: {}, {size} {how} ({}), {} at the start; see to that first",
+            gap_words(setup, *axis),
+            names.join(", "),
+            about(before)
+        )
+    }
+
     fn sentence(&self, setup: &Setup, arrival: Arrival, trend: Trend) -> String {
         let End { kind, axis, agents, gap, led: errors, speed } = self;
         let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
@@ -190,7 +217,10 @@ impl End {
         // Who leads has been named with how far it is off.
         let whose = if led && errors.is_some() { String::new() } else { format!(" ({})", names.join(", ")) };
         let so_far = if whose.is_empty() { so_far.trim_end_matches(',') } else { &so_far };
-        format!("not {done}: {} {so_far}{whose}{still}, {trend}", gap_words(setup, *axis))
+        let name = gap_words(setup, *axis);
+        // "axis 1 1 m" would be one number.
+        let apart = if name.ends_with(|letter: char| letter.is_ascii_digit()) { "," } else { "" };
+        format!("not {done}: {name}{apart} {so_far}{whose}{still}, {trend}")
     }
 }
 
@@ -233,7 +263,7 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
     }
     // A time has been advised, with room.
     let needs = |takes_s: f64| {
-        if advice.is_empty() { format!(": it needs some {} s more", nice(ROOM * takes_s)) } else { String::new() }
+        if advice.is_empty() { format!(": it needs some {} s more", nice(takes_s)) } else { String::new() }
     };
     advice.extend(takes_s.map(needs).map(|needs| {
         format!("the design is slow, whatever the robots do{needs}; larger weights, more links or larger roots make it faster")
@@ -258,9 +288,11 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
                 .into(),
         );
     }
+    let alone = left_alone(record.prediction.as_ref());
     if let (Some(s), Disagreement::Measured { last, .. }) = (metrics.final_tracking_error, metrics.disagreement)
         && !matches!(trend, Trend::Falls(_))
         && s > left_over(late, record.verdicts) * last
+        && alone.is_none_or(|alone| last > ALONE * alone)
     {
         // More damping is what samples bear least.
         let coarse = metrics.watched.and_then(|watched| watched.sampling_margin).map(|margin| margin.sigma);
@@ -276,7 +308,8 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
                 about(before),
                 about(sigma)
             ),
-            None => "raise the damping, or see what acts on them".to_owned(),
+            None if alone.is_some() => "raise the damping, or see what acts on them".to_owned(),
+            None => "raise the damping, or see what acts on them; `forwardstep check --predict` tells how much the design leaves by itself".to_owned(),
         };
         advice.push(format!("robots do not follow their references, |s| is still {}: {change}", about(s)));
     }
@@ -305,12 +338,16 @@ fn is_late_behind_leader(report: &Report) -> bool {
     asks(Id::SignGain) && asks(Id::BoundedDelays)
 }
 
+/// What is left at the end without s, where that is known. Where it is about as much, robots are not what keeps agents apart.
+fn left_alone(prediction: Option<&Predictions>) -> Option<f64> {
+    prediction?.course()?.disagreement.last().copied()
+}
+
 /// How long the design takes by itself, s, where that is long beside the run, and where by itself it would not have left much less than there is.
 fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<f64> {
     let prediction = prediction?;
-    if let (PredictedCourse::Found(course), Disagreement::Measured { last, .. }) =
-        (&prediction.course, metrics.disagreement)
-        && course.disagreement.last().is_some_and(|alone| last > ALONE * alone)
+    if let Disagreement::Measured { last, .. } = metrics.disagreement
+        && left_alone(Some(prediction)).is_some_and(|alone| last > ALONE * alone)
     {
         return None;
     }

@@ -130,6 +130,38 @@ impl Grid {
     }
 }
 
+/// Parts that are tried at most for every row that is to be taken.
+const FINEST: usize = 8;
+
+/// At most `most` rows, the first and the last among them, taken as a [`Grid`] takes its points where these signals change.
+pub(crate) fn busy_rows<'a>(rows: usize, most: usize, signals: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
+    if rows <= most {
+        return (0..rows).collect();
+    }
+    let progress = progress(rows, signals);
+    let last = progress.last().copied().unwrap_or(1.0);
+    let rows_of = |parts: usize| {
+        let row = |k: usize| match k == parts {
+            true => rows - 1,
+            false => progress.partition_point(|share| *share < last * k as f64 / parts as f64).min(rows - 1),
+        };
+        let mut picks: Vec<usize> = (0..=parts).map(row).collect();
+        picks.dedup();
+        picks
+    };
+    // Where much happens in one row several parts end, which then are of use elsewhere.
+    let mut parts = most.max(2) - 1;
+    let mut picks = rows_of(parts);
+    while picks.len() < most && parts < FINEST * most {
+        parts += parts.div_ceil(8);
+        match rows_of(parts) {
+            finer if finer.len() <= most => picks = finer,
+            _ => break,
+        }
+    }
+    picks
+}
+
 /// The part of all points that is spent before each row: rows count alike, and so does what signals change by, each as a part of all that it does.
 fn progress<'a>(rows: usize, signals: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
     let mut changed = vec![0.0; rows];
@@ -272,6 +304,27 @@ mod tests {
         assert_eq!(at(&[-1.0, 0.0, 0.25, 1.0, 2.0, 3.0, 5.0]), [2.0, 2.0, 2.5, 4.0, 1.0, -2.0, -2.0]);
         assert!(between(&[], &[], &[1.0])[0].is_nan() && between(&[0.0, 1.0], &[0.0, f64::NAN], &[0.5])[0].is_nan());
         assert_eq!(between(&[2.0], &[7.0], &[0.0, 2.0, 3.0]), [7.0; 3]);
+    }
+
+    /// What is over in a hundredth of a run was one row in eight of a path, and had corners.
+    #[test]
+    fn regress_rows_of_a_path_stand_where_it_moves() {
+        let moves: Vec<f64> = (0..3001).map(|k| (-f64::from(k) / 20.0).exp()).collect();
+        let picks = busy_rows(3001, 600, std::iter::once(&moves[..]));
+        let early = picks.iter().filter(|row| **row <= 100).count();
+        assert!(
+            (500..=600).contains(&picks.len()) && early > 80 && picks.is_sorted_by(|a, b| a < b),
+            "{early} of {}",
+            picks.len()
+        );
+        assert_eq!((picks[0], picks.last()), (0, Some(&3000)));
+        assert!(picks.windows(2).all(|pair| pair[1] - pair[0] <= 12), "no part of the run is left out");
+        let even = busy_rows(3001, 4, std::iter::empty());
+        assert!(even.len() == 4 && even.iter().zip([0, 1000, 2000, 3000]).all(|(row, near)| row.abs_diff(near) < 2));
+        assert_eq!(
+            (busy_rows(3, 40, std::iter::empty()), busy_rows(0, 40, std::iter::empty())),
+            (vec![0, 1, 2], vec![])
+        );
     }
 
     #[test]

@@ -82,13 +82,15 @@ fn cause(setup: &Setup, breakdown: &Breakdown) -> String {
                 || advice.clone(),
                 |stiffness| because(setup, breakdown, stiffness.explains(*step_s), stiffness, &advice),
             );
+            let budget_bytes = setup.solver.memory_budget_bytes;
+            // The length of steps is the mean of those that are kept.
+            let more = if *need_bytes <= budget_bytes as f64 { ", and more as steps become shorter," } else { "" };
             format!(
-                "{blamed} in steps of {} s, in which all that is sent within the longest delay, {} s, takes {} bytes where \
-                 `memory_budget_bytes` is {}; {why}",
+                "{blamed} in steps of {} s, in which all that is sent within the longest delay, {} s, takes {} bytes{more} where \
+                 `memory_budget_bytes` is {budget_bytes}; {why}",
                 about(*step_s),
                 number(setup.network.max_delay_s()),
                 about(*need_bytes),
-                setup.solver.memory_budget_bytes,
             )
         }
         BreakdownCause::Delay { delay, at_s } => {

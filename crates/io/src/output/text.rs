@@ -63,6 +63,12 @@ pub(crate) fn in_unit(unit: &str) -> String {
     if matches!(unit, "" | "1") { String::new() } else { format!(" in {unit}") }
 }
 
+/// Sizes in a narrow cell: lines break between them, and not before or within a unit.
+pub(crate) fn unbroken(sizes: &str) -> String {
+    let unbroken = |size: &str| size.replace(' ', "\u{a0}");
+    sizes.split(", ").map(unbroken).collect::<Vec<_>>().join(", ")
+}
+
 /// `2.5e-4` as [`number`] writes it, `2.5 × 10⁻⁴`, wherever a word is such a number.
 fn powers(words: &str) -> String {
     let is_part = |c: char| c.is_alphanumeric() || "._-−".contains(c);

@@ -17,6 +17,7 @@ use super::record::RunRecord;
 use super::table::Table;
 use super::text;
 use super::timeline::Timeline;
+use crate::wording::beginning;
 
 /// Points of all lines of a figure together.
 const ROOM: usize = 150_000;
@@ -26,6 +27,11 @@ const MOST_NAMES: usize = 24;
 const MOST_PARAMETERS: usize = 12;
 /// More agents do not fit on a page.
 const MOST_ESTIMATE_PANELS: usize = 24;
+
+/// Of what stands for no agent.
+const INK: [u8; 3] = [0x16, 0x19, 0x1f];
+/// Letters of a title that fit beside what a figure shows.
+const TITLE_LETTERS: usize = 70;
 
 /// What figures are drawn from.
 pub(crate) struct Plots<'a> {
@@ -42,27 +48,71 @@ impl<'a> Plots<'a> {
         Plots { record, break_points: timeline.break_points(), table }
     }
 
-    /// q, one panel per joint.
+    /// q, one panel per joint, and dashed that of a leader that is no agent.
     pub(crate) fn positions(&self) -> Result<String, EncodeError> {
         let predicted = |axis: usize| {
             let value = self.record.predicted_position()?.get(axis)?;
             Some((*value, "predicted agreement".to_owned()))
         };
-        self.per_joint("Positions", "q", Signal::Position, predicted)
+        let mut panels = self.per_joint("q", Signal::Position, predicted);
+        let mut legend = self.agents_legend();
+        if let Some(leader) = self.record.setup.following().and_then(|following| following.motion()) {
+            let grid = self.grid(leader.trajectory.paths().len());
+            for (axis, panel) in &mut panels {
+                let Some(path) = leader.trajectory.paths().get(*axis) else { continue };
+                let points: Vec<_> = grid.t_s.iter().map(|t_s| (*t_s, path.jet(*t_s)[0])).collect();
+                panel.lines.extend(dashes(&points, INK));
+            }
+            legend.push((format!("{}, dashed", leader.name), INK));
+        }
+        self.of_agents("Positions", legend, panels.into_iter().map(|(_, panel)| panel).collect())
     }
 
-    /// τ, one panel per joint.
+    /// τ, one panel per joint, and the thrust of what flies.
     pub(crate) fn torques(&self) -> Result<String, EncodeError> {
-        self.per_joint(names::input_words(self.record.setup).1, "τ", Signal::Torque, |_| None)
+        let setup = self.record.setup;
+        let mut panels: Vec<_> =
+            self.per_joint("τ", Signal::Torque, |_| None).into_iter().map(|(_, panel)| panel).collect();
+        let thrusts: Vec<_> = (0..self.table.agents())
+            .filter_map(|agent| Some((agent, self.table.column(agent, Signal::Thrust, 0)?)))
+            .collect();
+        if !thrusts.is_empty() {
+            let grid = self.grid(thrusts.len());
+            let units = text::units(thrusts.iter().map(|(agent, _)| names::unit(setup, *agent, Signal::Thrust, 0)));
+            panels.push(Panel {
+                title: "thrust".into(),
+                x: Across::Time,
+                y: text::in_unit(&units).trim_start().to_owned(),
+                log: false,
+                lines: thrusts
+                    .iter()
+                    .map(|(agent, values)| self.line(&grid, values, true, self.colour(*agent)))
+                    .collect(),
+                guide: None,
+            });
+        }
+        self.of_agents(names::input_words(setup).1, self.agents_legend(), panels)
     }
 
+    fn of_agents(&self, what: &str, legend: Vec<(String, [u8; 3])>, panels: Vec<Panel>) -> Result<String, EncodeError> {
+        Figure {
+            title: self.title(what),
+            legend,
+            columns: columns(panels.len()),
+            panels,
+            panel: (380, 230),
+            empty: "Nothing was recorded.",
+        }
+        .svg()
+    }
+
+    /// The panels of all joints of which something was recorded, in their order, each with its number.
     fn per_joint(
         &self,
-        what: &str,
         letter: &str,
         signal: Signal,
         guide: impl Fn(usize) -> Option<(f64, String)>,
-    ) -> Result<String, EncodeError> {
+    ) -> Vec<(usize, Panel)> {
         let (setup, table) = (self.record.setup, &self.table);
         let grid = self.grid(table.axes(signal).count());
         let panel = |axis: usize| {
@@ -74,27 +124,18 @@ impl<'a> Plots<'a> {
             let line = |&(agent, values): &(usize, &[f64])| {
                 self.line(&grid, values, signal == Signal::Torque, self.colour(agent))
             };
-            Panel {
+            let panel = Panel {
                 title: names::shared_axis_words(setup, axis),
                 x: Across::Time,
                 y: format!("{letter}{}", text::in_unit(&units)),
                 log: false,
                 lines: owners.iter().map(line).collect(),
                 guide: guide(axis),
-            }
+            };
+            (axis, panel)
         };
-        let panels: Vec<_> =
-            if table.t_s.is_empty() { Vec::new() } else { (0..table.largest_dof()).map(panel).collect() };
-        let panels: Vec<_> = panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect();
-        Figure {
-            title: self.title(what),
-            legend: self.agents_legend(),
-            columns: columns(panels.len()),
-            panels,
-            panel: (380, 230),
-            empty: "Nothing was recorded.",
-        }
-        .svg()
+        let axes = if table.t_s.is_empty() { 0 } else { table.largest_dof() };
+        (0..axes).map(panel).filter(|(_, panel)| !panel.lines.is_empty()).collect()
     }
 
     /// ϑ̂, one panel per agent.
@@ -160,7 +201,6 @@ impl<'a> Plots<'a> {
         let gap = Gap::of(self.record.setup);
         let mut legend = Vec::new();
         let mut panels = Vec::new();
-        let ink = [0x16, 0x19, 0x1f];
         if let Ok(series) = &series {
             let axes = if series.per_axis.len() > 1 { series.per_axis.as_slice() } else { &[] };
             let grid = self.grid(axes.len() + 1);
@@ -169,17 +209,17 @@ impl<'a> Plots<'a> {
                 axes.iter().enumerate().map(|(axis, values)| self.line(&grid, values, false, colour(axis))).collect();
             if let Some(course) = self.record.prediction.as_ref().and_then(|prediction| prediction.course()) {
                 let points: Vec<_> = course.t_s.iter().copied().zip(course.disagreement.iter().copied()).collect();
-                lines.extend(dashes(&points, ink));
+                lines.extend(dashes(&points, INK));
             }
-            lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, ink) });
+            lines.push(Line { width: 2, ..self.line(&grid, &series.overall, false, INK) });
             if !axes.is_empty() {
                 legend = (0..axes.len().min(MOST_NAMES))
                     .map(|axis| (names::gap_words(self.record.setup, axis), colour(axis)))
                     .collect();
-                legend.push(("largest".into(), ink));
+                legend.push(("largest".into(), INK));
             }
             if self.record.prediction.as_ref().is_some_and(|prediction| prediction.course().is_some()) {
-                legend.push(("predicted, dashed".into(), ink));
+                legend.push(("predicted, dashed".into(), INK));
             }
             let unit = text::in_unit(&names::gap_unit(self.record.setup));
             let guide = self.record.goal.and_then(|outcome| Some((outcome.goal.bound()?, "goal".to_owned())));
@@ -208,7 +248,7 @@ impl<'a> Plots<'a> {
 
     fn title(&self, what: &str) -> String {
         let title = self.record.title;
-        if title.is_empty() || title.chars().count() > 70 { what.to_owned() } else { format!("{what} – {title}") }
+        if title.is_empty() { what.to_owned() } else { format!("{what} – {}", beginning(title, TITLE_LETTERS)) }
     }
 
     fn colour(&self, agent: usize) -> [u8; 3] {

@@ -71,6 +71,8 @@ const PAGE_JS: [&str; 17] = [
 const CHOICES_JS: &str = include_str!("../../../assets/report/choices.js");
 /// Loads the page again; only on pages of a run that goes on.
 const FOLLOW_JS: &str = include_str!("../../../assets/report/follow.js");
+/// Of more agents a page draws quantiles, and curves of who is chosen; as in `cards.js`.
+const MOST_CURVES: usize = 24;
 /// Nothing is fetched, whatever the page says.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
@@ -222,7 +224,8 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>, is_alone: bool, explai
                 @if recorded(Signal::Reference(0)) {
                     // Where agents keep offsets z is the velocity of what they agree on.
                     @let away = if Gap::keeps_offsets(record.setup) { ", which is of positions less their offsets" } else { "" };
-                    (card("velocity", &format!("{speed} and reference"), &format!("{letter}, and z dashed{away}"), ""))
+                    @let dashed = if record.setup.agents.len() > MOST_CURVES { "; of who is chosen z dashed" } else { ", and z dashed" };
+                    (card("velocity", &format!("{speed} and reference"), &format!("{letter}{dashed}{away}"), ""))
                 } @else {
                     (card("velocity", speed, letter, ""))
                 }

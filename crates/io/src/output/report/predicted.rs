@@ -36,7 +36,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                         table.numbers {
                             thead { tr { th {} th { "predicted" } th { "observed" } } }
                             tbody { @for (name, predicted, observed) in rows(setup, course, metrics) {
-                                tr { th { (name) } td { (predicted) } td { (observed) } }
+                                tr { th { (name) } td { (text::unbroken(&predicted)) } td { (text::unbroken(&observed)) } }
                             } }
                         }
                     }
@@ -185,9 +185,9 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
                     @let unit = text::unit(&names::unit(setup, peak.agent, Signal::Torque, peak.axis));
                     tr {
                         th { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
-                        td { (number(peak.value.abs())) " " (unit) }
-                        td { @if let Some(seen) = observed(peak.agent, peak.axis) { (number(seen.value.abs())) " " (unit) } @else { "–" } }
-                        td { @if let Some(at_most) = peak.at_most { (number(at_most)) " " (unit) } @else { "–" } }
+                        td { (text::unbroken(&format!("{} {unit}", number(peak.value.abs())))) }
+                        td { @if let Some(seen) = observed(peak.agent, peak.axis) { (text::unbroken(&format!("{} {unit}", number(seen.value.abs())))) } @else { "–" } }
+                        td { @if let Some(at_most) = peak.at_most { (text::unbroken(&format!("{} {unit}", number(at_most)))) } @else { "–" } }
                         td { (number((100.0 * peak.estimate_off).round())) " %" }
                     }
                 } }

@@ -7,8 +7,10 @@ use serde::Serialize;
 /// A series keeps its own origin where its middle is so many times as large as half of what it varies by: what rounding to single precision then
 /// moves it by, at most 6·10⁻⁸ of its size, would show beside how it moves.
 const FAR: f64 = 100.0;
-/// Or where it is so far from zero that rounding would show beside others, whatever it varies by.
+/// Or where it is so far from zero that rounding would show beside others, even if it varies much.
 const FAR_BESIDE_OTHERS: f64 = 1000.0;
+/// But never where it comes near to zero: what falls by decades has its digits there, and they are what a logarithmic axis shows.
+const WELL_AWAY: f64 = 3.0;
 
 /// Series of one grid, one after the other.
 #[derive(Default)]
@@ -43,7 +45,7 @@ fn origin(values: &[f64]) -> f64 {
     let (low, high) = held.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     let (middle, half) = (0.5 * low + 0.5 * high, 0.5 * high - 0.5 * low);
     let exact = half == 0.0 && f64::from(middle as f32) == middle;
-    let far = middle.abs() > FAR * half || middle.abs() > FAR_BESIDE_OTHERS && middle.abs() > half;
+    let far = middle.abs() > FAR * half || middle.abs() > FAR_BESIDE_OTHERS && middle.abs() > WELL_AWAY * half;
     if middle.is_finite() && far && !exact { middle } else { 0.0 }
 }
 
@@ -67,6 +69,17 @@ mod tests {
             let values: Vec<f64> = (0..50).map(|k| middle + size * f64::from(k).sin()).collect();
             for (value, shown) in values.iter().zip(shown(&values)) {
                 assert!((value - shown).abs() <= 1e-5 * size.max(1e-9 * middle.abs()), "{middle} {value} {shown}");
+            }
+        }
+    }
+
+    /// What fell from 5000 to 10⁻¹⁰ was stored less its middle, and had spikes and a floor on a logarithmic axis.
+    #[test]
+    fn regress_what_falls_by_decades_keeps_its_digits() {
+        for size in [1.0, 5000.0, -5000.0, 3e9] {
+            let values: Vec<f64> = (0..200).map(|k| size * (-0.15 * f64::from(k)).exp()).collect();
+            for (value, shown) in values.iter().zip(shown(&values)) {
+                assert!((value - shown).abs() <= 1e-7 * value.abs(), "{value} {shown}");
             }
         }
     }

@@ -1,6 +1,6 @@
 //! The network in space: what each agent looks like, and the rows from which the page places it at any instant.
 //!
-//! Rows are taken as they were recorded, every so many; the page draws straight lines between them. What an arm does between
+//! Rows are taken as they were recorded, more of them where there is more motion; the page draws straight lines between them. What an arm does between
 //! its joints is computed in the page from `kinematics`, once for robots that are the same.
 
 mod kinematics;
@@ -17,6 +17,7 @@ use forwardstep_sim::{
 };
 use serde::Serialize;
 
+use super::super::decimate::busy_rows;
 use super::super::packets;
 use super::super::table::Table;
 use super::super::timeline::Timeline;
@@ -121,7 +122,7 @@ impl Flights {
     }
 }
 
-/// Rows as they were recorded, every so many.
+/// Rows as they were recorded, of many some.
 pub(super) struct Rows {
     pub(super) t_s: Vec<f64>,
     picks: Vec<usize>,
@@ -129,12 +130,9 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    fn new(rows_t_s: &[f64], columns: usize) -> Rows {
-        let rows = rows_t_s.len();
+    fn new(rows_t_s: &[f64], columns: usize, moving: &[&[f64]]) -> Rows {
         let room = (ROOM / columns.max(1)).clamp(FEWEST_ROWS, MOST_ROWS);
-        let shown = rows.min(room);
-        let pick = |k: usize| if shown > 1 { k * (rows - 1) / (shown - 1) } else { 0 };
-        let picks: Vec<usize> = (0..shown).map(pick).collect();
+        let picks = busy_rows(rows_t_s.len(), room, moving.iter().copied());
         let t_s = picks.iter().filter_map(|row| rows_t_s.get(*row).copied()).collect();
         Rows { t_s, picks, numbers: Singles::default() }
     }
@@ -172,7 +170,13 @@ impl Scene {
         shapes: Option<&Shapes>,
     ) -> (Scene, Rows) {
         let columns: usize = setup.agents.iter().map(|agent| 2 * agent.robot.axes.len() + 1).sum();
-        let mut rows = Rows::new(table.t_s, columns);
+        let moving = |agent: usize| {
+            let axes = setup.agents[agent].robot.axes.len();
+            let (q, attitude) = ((0..axes).map(|k| (Signal::Position, k)), (0..4).map(|k| (Signal::Attitude, k)));
+            q.chain(attitude).filter_map(move |(signal, entry)| table.column(agent, signal, entry))
+        };
+        let moving: Vec<&[f64]> = (0..setup.agents.len()).flat_map(moving).collect();
+        let mut rows = Rows::new(table.t_s, columns, &moving);
         let mut arms = Vec::new();
         let agents =
             (0..setup.agents.len()).map(|agent| AgentScene::of(setup, table, agent, shapes, &mut arms, &mut rows));
