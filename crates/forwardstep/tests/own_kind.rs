@@ -306,3 +306,13 @@ fn regress_a_plant_that_does_not_fit_its_robot_is_refused_in_continuous_time_and
         }
     }
 }
+
+/// Axes of one's own have no unit that is known; a signal of one's own says what it is in.
+#[test]
+fn regress_a_signal_of_ones_own_keeps_its_unit_on_axes_of_ones_own() {
+    let mut setup = read(TANKS).unwrap().setup;
+    let unit = |setup: &sim::Setup, signal| forwardstep::io::output::names::unit(setup, 0, signal, 0);
+    assert_eq!(unit(&setup, Signal::Own(&tank::INFLOW)), "m^3/s");
+    setup.agents[0].robot.axes[0].unit = sim::AxisUnit::Own;
+    assert_eq!([Signal::Own(&tank::INFLOW), Signal::Position].map(|signal| unit(&setup, signal)), ["m^3/s", "1"]);
+}
