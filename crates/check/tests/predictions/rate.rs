@@ -348,3 +348,29 @@ fn hundreds_of_agents_have_a_course_and_a_rate_or_a_reason() {
         }
     }
 }
+
+/// A ring of thirty with a slow pair of roots, taken for a network that repeats itself. Within what a short run allows to be looked at the pair has not
+/// turned once, and the rate was that of what falls first, eleven times too fast in another ring.
+#[test]
+fn regress_a_slow_pair_of_roots_is_no_fast_rate_where_a_run_is_short() {
+    const AGENTS: usize = 30;
+    let ring: Vec<_> = (0..AGENTS).map(|k| edge(k, (k + 1) % AGENTS, 1.0, 0)).collect();
+    let mut setup = masses(Exchange::Position, 2, Schedule::fixed(ring.clone()), vec![Delay::constant(0.1)]);
+    setup.agents = (0..AGENTS).map(|k| AgentSetup { name: format!("m-{k}"), ..setup.agents[k % 5].clone() }).collect();
+    for (k, agent) in setup.agents.iter_mut().enumerate() {
+        agent.start.q = vec![noise(k), 0.0];
+    }
+    setup.network.agents = AGENTS;
+    let root_per_s = rate(&setup).unwrap().root_per_s;
+    // What two phases have in common would be a network that stays.
+    let other = (0..AGENTS).map(|k| edge(k, (k + 1) % AGENTS, 1.0 + 1e-9, 0)).collect();
+    setup.network.schedule =
+        Schedule::periodic([ring, other].into_iter().map(|edges| Phase { edges, dwell_s: 1.0 }).collect());
+    let mut go_on = |_: Progress| ControlFlow::Continue(());
+    setup.time.end_s = 8.0;
+    let short = period_rate(&setup, &mut go_on);
+    assert!(matches!(short, Err(NoPeriodRate::Unsettled { .. })), "{short:?}, {root_per_s:?}");
+    setup.time.end_s = 1000.0;
+    let long = period_rate(&setup, &mut go_on).unwrap();
+    assert!((long.rate_per_s / root_per_s[0] - 1.0).abs() < 0.2, "{long:?}, {root_per_s:?}");
+}
