@@ -18,7 +18,7 @@ use forwardstep::io::scenario::{Scenario, ScenarioError};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
 use sim::system::{Declaration, DeclaredClaim, Known};
-use sim::{Assembly, Block, Interface, Law, LawWords, RobotSetup, SetupError, Signal};
+use sim::{Assembly, Block, Exchange, Interface, Law, LawWords, ReferenceFamily, RobotSetup, SetupError, Signal};
 
 const TANKS: &str = r#"format = 2
 time = { end_s = 10 }
@@ -262,7 +262,7 @@ impl Law for Says {
     }
 }
 
-/// Its plant has another number of axes than its robot.
+/// Its plant may have another number of axes than its robot, and it claims to send a velocity and to keep offsets, where it does neither.
 #[derive(Debug)]
 struct Unfit {
     axes: usize,
@@ -274,7 +274,9 @@ impl Law for Unfit {
     }
 
     fn interface(&self, _: &RobotSetup) -> Option<Interface> {
-        Some(Interface::tracking(&["level"]))
+        let follows = &[ReferenceFamily::Target, ReferenceFamily::Consensus];
+        let exchanges = &[Exchange::Position, Exchange::PositionVelocity];
+        Some(Interface { exchanges, follows, offsets: true, ..Interface::tracking(&["level"]) })
     }
 
     fn known(&self) -> Known {
@@ -304,6 +306,24 @@ fn regress_a_plant_that_does_not_fit_its_robot_is_refused_in_continuous_time_and
                 "{error}"
             );
         }
+    }
+}
+
+/// A velocity that a plant has not was the number behind its position.
+#[test]
+fn regress_what_a_law_claims_of_itself_is_held_against_its_plant_and_its_controller() {
+    let consensus = "format = 2\ntime.end_s = 1\n[[agents]]\nname = \"m\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 1 }\n\
+                     start.position_m = [[0], [1]]\n[reference.consensus]\nroots_per_s = [1]\nexchange = \"position\"\n[network]\nedges.ring = {}\n";
+    for text in [TANKS.to_owned(), format!("{TANKS}\n[control]\nsample_hz = 100\n")] {
+        let mut setup = read(&text).unwrap().setup;
+        setup.agents.iter_mut().for_each(|agent| agent.law = Arc::new(Unfit { axes: 1 }));
+        let refused =
+            |setup: &sim::Setup| sim::simulate(setup, &mut |_| std::ops::ControlFlow::Continue(())).unwrap_err();
+        let error = refused(&sim::Setup { exchange: Exchange::PositionVelocity, ..setup.clone() });
+        assert!(matches!(error, SetupError::SendsPositionOnly { .. }), "{error}");
+        setup.reference = read(consensus).unwrap().setup.reference;
+        let error = refused(&setup);
+        assert!(matches!(error, SetupError::NoOffsets { .. }), "{error}");
     }
 }
 

@@ -5,7 +5,7 @@ const talk = (() => {
   const SPACE = { left: EDGE, top: 138, width: 740, height: 514 };
   const PLOT = { left: 806, top: 160, width: 440, height: 236 };
   const HEADING = "600 15px";
-  const NAME_ROWS = 2;
+  const NAME_ROWS = 3;
   const FRAMES_PER_S = 25;
   const PICTURES_PER_S = 10;
   const part = (id) => document.getElementById(id);
@@ -84,7 +84,7 @@ const talk = (() => {
       const some = (count) => (count < named.length ? [...named.slice(0, count), { label: `and ${named.length - count} more`, colour: "none" }] : named);
       // As many as leave room for figures and the verdict.
       let count = named.length > 9 ? 8 : named.length;
-      while (count > 1 && namesBelow(svgPen(0, 0, measuring()), some(count), PLOT.width, 0) > NAME_ROWS * 17) count -= 1;
+      while (count > 1 && namesBelow(svgPen(0, 0, measuring()), some(count), PLOT.width, 17) > NAME_ROWS * 17) count -= 1;
       inside(pen, PLOT, () => (y = PLOT.top + 16 + namesBelow(pen, some(count), PLOT.width, PLOT.height + 20)));
     }
     const figures = [...document.querySelectorAll(".verdict .figures div")].slice(0, 6);

@@ -161,14 +161,13 @@ impl End {
     /// What became of a gap before a run broke down.
     fn driven_apart(&self, setup: &Setup, before: f64) -> String {
         let End { kind, axis, agents, gap, .. } = self;
-        let unit = gap_unit_on(setup, agents.first().copied().unwrap_or(0), *axis);
+        let size = sized(*gap, &gap_unit_on(setup, agents.first().copied().unwrap_or(0), *axis));
         let (done, how) = match (kind, setup.following().is_some()) {
             (Gap::Disagreement, _) => ("driven apart", "apart"),
             (Gap::Error, true) => ("driven away from the leader", "off"),
             (Gap::Error, false) => ("driven away from the target", "off"),
         };
         let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
-        let size = format!("{} {unit}", about(*gap)).trim_end().to_owned();
         format!(
             "{done}: {}, {size} {how} ({}), {} at the start; see to that first",
             gap_words(setup, *axis),
@@ -179,9 +178,8 @@ impl End {
 
     fn sentence(&self, setup: &Setup, arrival: Arrival, trend: Trend) -> String {
         let End { kind, axis, agents, gap, led: errors, speed } = self;
-        let with_unit = |value: f64, unit: String| format!("{} {unit}", about(value)).trim_end().to_owned();
         let first = agents.first().copied().unwrap_or(0);
-        let size = with_unit(*gap, gap_unit_on(setup, first, *axis));
+        let size = sized(*gap, &gap_unit_on(setup, first, *axis));
         let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
         let led = setup.following().is_some();
         let (done, so_far) = match (kind, led) {
@@ -193,7 +191,7 @@ impl End {
                 Some([(own, own_axis), (others, axis)]) => {
                     let leader = setup.leading_agent().unwrap_or(first);
                     let [own, others] = [(own, own_axis), (others, axis)]
-                        .map(|(size, axis)| with_unit(*size, gap_unit_on(setup, first, *axis)));
+                        .map(|(size, axis)| sized(*size, &gap_unit_on(setup, first, *axis)));
                     let name = agent_name(setup, leader);
                     ("following", format!("{others} from {name}, and {name} {own} from its target,"))
                 }
@@ -209,7 +207,7 @@ impl End {
         let still = match speed {
             Some(0.0) if *kind == Gap::Disagreement => ", at rest".to_owned(),
             Some(speed) if *kind == Gap::Disagreement => {
-                format!(", still moving at {}", with_unit(*speed, unit(setup, first, Signal::Velocity, *axis)))
+                format!(", still moving at {}", sized(*speed, &unit(setup, first, Signal::Velocity, *axis)))
             }
             Some(_) | None => String::new(),
         };
@@ -222,6 +220,10 @@ impl End {
         let apart = if name.ends_with(|letter: char| letter.is_ascii_digit()) { "," } else { "" };
         format!("not {done}: {name}{apart} {so_far}{whose}{still}, {trend}")
     }
+}
+
+fn sized(value: f64, unit: &str) -> String {
+    format!("{} {unit}", about(value)).trim_end().to_owned()
 }
 
 /// How the gap moves at the end.

@@ -246,9 +246,7 @@ impl ValueProblem {
             ValueProblem::WrongType { found, expected } if found == "a table" && expected == "a list" => {
                 "a list of tables has its name in double brackets, such as [[agents]]".into()
             }
-            ValueProblem::WrongType { found, expected } if expected.contains("number") => {
-                return as_number(found, expected);
-            }
+            ValueProblem::WrongType { found, expected } => return as_number(found, expected),
             ValueProblem::NotAChoice { found, allowed } => return of_choice(found, allowed),
             ValueProblem::MissingKey { key } => return missing(key).map(str::to_owned),
             ValueProblem::Unreadable { message } if is_too_deep(message) => {
@@ -268,9 +266,10 @@ impl ValueProblem {
 fn as_number(found: &str, expected: &str) -> Option<String> {
     let bare = found.trim_matches('"');
     let value = bare.parse::<f64>().ok().filter(|value| value.is_finite())?;
-    match expected.contains("whole") {
-        true => (value.fract() == 0.0).then(|| format!("write {value}")),
-        false => (bare != found).then(|| format!("write {bare}, without quotes")),
+    match expected {
+        "a whole number" => (value.fract() == 0.0).then(|| format!("write {value}")),
+        _ if expected.starts_with("a number") => (bare != found).then(|| format!("write {bare}, without quotes")),
+        _ => None,
     }
 }
 

@@ -19,7 +19,7 @@ use crate::agents::{Adaptive, RobotModel};
 use crate::quantity::{LARGEST, Path, at_least, each, finite, positive, within};
 use crate::recording::Signal;
 use crate::reference::{Desired, ReferenceDynamics};
-use crate::setup::{AgentSetup, Axis, Exchange, Setup};
+use crate::setup::{AgentSetup, Axis, Setup};
 use crate::system::{LawWords, Robot};
 use crate::trajectory::Pieces;
 
@@ -279,10 +279,6 @@ impl<'a> Assembly<'a> {
         // What the robot says of itself is what neighbours, rows and messages go by.
         LengthError::check("the axes of the plant", own.robot.axes.len(), pair.axes())
             .map_err(|error| SetupError::Length { agent: own.name.clone(), error })?;
-        let sends_velocity = setup.exchange == Exchange::PositionVelocity && setup.leader() != Some(self.agents[0]);
-        if sends_velocity && own.robot.velocity_len() == 0 {
-            return Err(SetupError::SendsPositionOnly { agent: own.name.clone(), law: own.law.words().name });
-        }
         self.takes_pushes(&mut *pair)?;
         let vectors = blocks
             .iter()

@@ -151,8 +151,9 @@ fn goes_together(setup: &Setup, index: usize) -> Result<(), SetupError> {
     if !interface.follows.contains(&reference.interface().family) {
         return Err(SetupError::wrong_reference(reference, agent));
     }
-    // No edge leads to the agent that leads.
-    if !interface.exchanges.contains(&setup.exchange) && setup.leader() != Some(index) {
+    // Whatever its law says of itself, what has no velocity sends none. No edge leads to the agent that leads.
+    let sends = setup.exchange != Exchange::PositionVelocity || agent.robot.velocity_len() > 0;
+    if !(sends && interface.exchanges.contains(&setup.exchange)) && setup.leader() != Some(index) {
         return Err(SetupError::SendsPositionOnly { agent: name(), law });
     }
     if !interface.pushed && is_acted_on(agent) {

@@ -172,10 +172,10 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         @if let Some(balance) = metrics.balance_residual {
             (fact("Balance", html! {
                 @if balance.relative > 1.0 && balance.relative.is_finite() {
-                    "V + ∫ dissipation leaves V(0) by " (number(balance.relative)) " times"
-                    (of_what(record, balance.agent).replacen(" of", "", 1)) " (worst: "
+                    "V + ∫ dissipation leaves V(0) by " (number(balance.relative)) " times "
+                    (balanced(record, balance.agent)) " (worst: "
                 } @else if balance.relative.is_finite() {
-                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) (of_what(record, balance.agent)) " (worst: "
+                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) " of " (balanced(record, balance.agent)) " (worst: "
                 } @else { "V is no longer finite (" }
                 (names::agent_name(setup, balance.agent)) ", t = " (number(balance.t_s)) " s)"
                 small { (BALANCE_WORDS) }
@@ -185,7 +185,7 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
 }
 
 /// What the residual of a balance is a part of.
-fn of_what(record: &RunRecord<'_>, agent: usize) -> String {
+fn balanced(record: &RunRecord<'_>, agent: usize) -> String {
     let setup = record.setup;
     let whole = balance_whole(&Table::new(setup, &record.outcome.recording), agent).unwrap_or(0.0);
     let name = if setup.agents[agent].pushes.is_empty() { "V(0)" } else { "the largest V" };
@@ -193,9 +193,9 @@ fn of_what(record: &RunRecord<'_>, agent: usize) -> String {
         true => {
             let unit = text::unit(&names::unit(setup, agent, Signal::Lyapunov, 0));
             let sized = |value: f64| format!("{} {unit}", number(value)).trim_end().to_owned();
-            format!(" of {}, beside which {name}, {}, is small", sized(BALANCE_FLOOR_J), sized(whole))
+            format!("{}, beside which {name}, {}, is small", sized(BALANCE_FLOOR_J), sized(whole))
         }
-        false => format!(" of {name}"),
+        false => name.to_owned(),
     }
 }
 
