@@ -95,10 +95,9 @@ const HORIZONS: f64 = 10.0;
 const MOST_PERIODS: usize = 1 << 16;
 /// A rate that was seen before the work ran out is taken where single blocks of periods are no farther from it.
 const SURE: f64 = 0.02;
-/// A rate that is seen before nearly all has fallen is one where only this share of the start is left: what falls slowly has fallen as well by then, and
-/// a slow pair of roots that has not yet turned once, which looks like a fast one, has left more. And where half of the time gives it to this part.
+/// A rate that is seen before nearly all has fallen is one where only this share of the start is left: what falls slowly has fallen as well by then. A
+/// slow pair of roots that has not yet turned once looks like a fast one, and has left more.
 const LEFT: f64 = 1e-2;
-const SETTLED: f64 = 0.1;
 /// Columns of an agent on one axis, roughly, and how many numbers may be recorded.
 const COLUMNS: usize = 8;
 const MOST_NUMBERS: usize = 20_000_000;
@@ -159,24 +158,19 @@ pub fn period_rate_within(
         // The first is the start.
         let seen = each.iter().skip(1).take_while(|width| **width > FLOOR * start).count();
         let ends = 2.0 * alone.time.end_s > HORIZONS * setup.time.end_s || 2 * together * periods > MOST_PERIODS;
-        let apart = apart(&recording);
-        let found = factor(&each[..=seen], &apart, period_s, together);
+        let found = factor(&each[..=seen], &apart(&recording), period_s, together);
         if seen < periods || each[periods] < FALLEN * start {
             return found;
         }
-        let half = factor(&each[..=seen / 2], &apart[..seen / 2], period_s, together);
-        let is_settled = |found: &PeriodRate| {
-            each[seen] < LEFT * start
-                && half.as_ref().is_ok_and(|half| (half.rate_per_s / found.rate_per_s - 1.0).abs() < SETTLED)
-        };
+        let is_clear = each[seen] < LEFT * start;
         if ends {
             return match found {
-                Ok(found) if !is_settled(&found) => Err(NoPeriodRate::Unsettled { periods: together * seen }),
+                Ok(_) if !is_clear => Err(NoPeriodRate::Unsettled { periods: together * seen }),
                 found => found,
             };
         }
         seen_before =
-            found.ok().filter(|found| libm::pow(1.0 + found.wavers, together as f64) - 1.0 < SURE && is_settled(found));
+            found.ok().filter(|found| libm::pow(1.0 + found.wavers, together as f64) - 1.0 < SURE && is_clear);
         if 2 * periods <= most {
             periods *= 2;
         } else {
