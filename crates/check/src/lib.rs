@@ -41,7 +41,7 @@ pub use footing::{Footing, Ground};
 pub use hypothesis::{Answer, Evidence, Hypothesis, Id, Rigour};
 pub use practical::{
     AgreementBound, Along, AxisBound, ClippedCommands, FastestDamping, Finding, Hold, Injection, InjectionBalance,
-    InjectionCourse, InjectionWatch, LoadReached, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE,
+    InjectionCourse, InjectionWatch, LoadReached, LoopAlong, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE,
     NoReferenceGains, Over, PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains,
     SamplingMargin, StaticLoad, Trial, WholeLoop, along, fastest_damping, mean_power_w, practical,
 };

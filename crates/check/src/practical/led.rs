@@ -29,6 +29,20 @@ pub(super) struct Led {
     pub(super) has_sign: bool,
 }
 
+impl Led {
+    /// The setup as it would start if its agent were here.
+    pub(super) fn put_into(&self, setup: &Setup) -> Setup {
+        let mut there = setup.clone();
+        let tracks = setup.tracks(self.agent);
+        let agent = &mut there.agents[self.agent];
+        (agent.start.q, agent.start.dq) = (self.q.clone(), self.dq.clone());
+        // Left out, z is q̇ and what follows is zero, as at rest. A target of as many roots leads to one derivative less.
+        let states = if tracks { agent.roots_per_s.len().saturating_sub(1) } else { 0 };
+        agent.start.reference = [&self.dq, &self.dz].into_iter().take(states).cloned().collect();
+        there
+    }
+}
+
 /// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
 pub(super) fn way(setup: &Setup) -> Vec<Led> {
     let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();

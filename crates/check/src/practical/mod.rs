@@ -47,7 +47,7 @@ pub use gains::{NoReferenceGains, Over, ReferenceGains};
 pub use held::Hold;
 pub use injected::{Injection, InjectionBalance, InjectionCourse, InjectionWatch, NAMED_SHARE};
 pub use loads::StaticLoad;
-pub use looped::{LoopAt, LoopRate, Trial, WholeLoop};
+pub use looped::{LoopAlong, LoopAt, LoopRate, Trial, WholeLoop};
 pub(crate) use margin::fastest_reference_per_s;
 pub use margin::{MarginAt, RECOMMENDED_MARGIN, SamplingMargin};
 pub use power::{PowerBound, mean_power_w};

@@ -207,20 +207,29 @@ fn worst_of(agents: usize, all: usize) -> String {
 }
 
 fn whole(found: &WholeLoop) -> String {
-    let WholeLoop { start, led, period_s, agents, of: all, .. } = found;
+    let WholeLoop { start, period_s, agents, of: all, along, .. } = found;
     let last = found.last();
-    let (of, name) = (worst_of(*agents, *all), &last.agent.name);
+    // Whose loop grows most, and what it would do in the ideal one.
+    let (named, rate) = match along {
+        Some(along) if found.last.is_none() || along.grows_per_s() >= found.lasting_per_s() => {
+            (&along.agent, along.rate)
+        }
+        _ => (&last.agent, last.rate()),
+    };
+    let (of, name) = (worst_of(*agents, *all), &named.name);
     let whose = match last.network {
         Some(_) if *all == 2 => "both agents together".to_owned(),
         Some(_) => format!("all {all} agents together"),
         None => format!("{name}{of}"),
     };
-    let places = match &led[..] {
-        [] => "at the start".to_owned(),
-        [last] => format!("at the start and at the state predicted for t = {} s", rounded(last.t_s)),
-        led => format!("at the start and at {} states on the way", led.len()),
+    let at_last = found.last.as_ref().map(|last| format!("at the state predicted for t = {} s", rounded(last.t_s)));
+    let places = match (along, at_last) {
+        (None, None) => "at the start".to_owned(),
+        (None, Some(last)) => format!("at the start and {last}"),
+        (Some(_), None) => "at the start and along the motion that leads".to_owned(),
+        (Some(_), Some(last)) => format!("at the start, along the motion that leads, and {last}"),
     };
-    let advice = match last.rate().ideal_per_s.or(start.rate().ideal_per_s) {
+    let advice = match rate.ideal_per_s.or(start.rate().ideal_per_s) {
         Some(_) => {
             "where velocities were measured and samples fast, it would not: sample faster, filter less, or let roots, weights or λ be smaller"
         }
@@ -235,6 +244,10 @@ fn whole(found: &WholeLoop) -> String {
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
             format!("a mode grows at {}/s; {advice}", rounded(rate))
         }
+        (Some(rate), _, _) if found.decays_as_begun() && found.answer() == PracticalAnswer::Marginal => format!(
+            "once estimates are right a mode grows at {}/s, and none does as they start; {advice}",
+            rounded(rate)
+        ),
         (Some(rate), _, _) if found.is_contradicted(rate) => format!(
             "a mode grows at {}/s in some of these states, though a trial of {} s does not run away; {advice}",
             rounded(rate),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use forwardstep_check::{Finding, PracticalAnswer, WholeLoop, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::law::ParameterBounds;
+use forwardstep_core::robot::PlanarLinks;
 use forwardstep_sim::drives::{JointDrives, JointFriction};
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::schedule::Schedule;
@@ -337,7 +338,8 @@ fn regress_targets_are_looked_at_along_their_way_whatever_the_number_of_roots_is
         setup.time.end_s = 100.0;
         // Linear maps alone, without a trial.
         let [slow, fast] = [20.0, 2000.0].map(|hz| WholeLoop::of(&setup.clone().sampled(hz)).expect("it has numbers"));
-        assert_eq!((slow.led.len(), slow.start_per_s()), (4, None), "{roots:?}: {slow:?}");
+        assert_eq!((&slow.last, slow.start_per_s()), (&None, None), "{roots:?}: {slow:?}");
+        assert!(slow.along.is_some(), "{roots:?}: {slow:?}");
         assert_eq!(slow.answer(), PracticalAnswer::Inadequate, "{roots:?}: {slow:?}");
         assert!(fast.answer() < PracticalAnswer::Inadequate, "{roots:?}: {fast:?}");
     }
@@ -360,5 +362,35 @@ fn regress_the_loop_of_joints_that_rub_is_that_without_friction() {
         let (agents, rate) = looped(Some(JointFriction { coulomb: vec![coulomb; 2], width: vec![0.01; 2], dry_s }));
         assert_eq!(agents, smooth.0);
         assert!((rate - smooth.1).abs() < 1e-3 * smooth.1, "{coulomb}: {rate} and {smooth:?}");
+    }
+}
+
+/// At every instant the loop decays by itself; while the arm swings it does not.
+#[test]
+fn regress_a_loop_along_a_motion_grows_where_its_run_does() {
+    let t = || Expression::variable(0);
+    let arm = |hz: f64, end_s: f64| {
+        let mut agent = arm(0, &[1.0, 2.0]);
+        agent.robot.theta = PlanarLinks::uniform([2.0, 1.5], [1.0, 0.8]).theta().to_vec();
+        agent.law = Arc::new(Known { damping: Gain::Number(8.0) });
+        (agent.start.q, agent.start.dq) = (vec![0.0, 1.0], vec![0.0; 2]);
+        let second = Expression::number(1.0) + (t() * 1.7).sin_of();
+        let mut setup = tracking(agent, vec![formula(t().sin_of() * 1.5), formula(second)]);
+        (setup.time.end_s, setup.time.record_every_s) = (end_s, 0.1);
+        setup.sampled(hz)
+    };
+    // How large s is at most behind the beginning.
+    let astray = |setup: &Setup| {
+        let outcome = simulate(setup, &mut |_| ControlFlow::Continue(())).expect("it runs");
+        let errors = outcome.recording.columns.iter().filter(|column| column.signal == Signal::TrackingError);
+        errors.flat_map(|column| &column.values[column.values.len() / 2..]).fold(0.0_f64, |most, s| most.max(s.abs()))
+    };
+    for (hz, grows) in [(20.0, true), (23.0, true), (26.0, true), (30.0, true), (40.0, false), (50.0, false)] {
+        let setup = arm(hz, 90.0);
+        let found = WholeLoop::of(&setup).expect("it has numbers");
+        let along = found.along.as_ref().expect("it is led");
+        assert!(along.is_gapless, "{along:?}");
+        assert_eq!(found.answer() == PracticalAnswer::Inadequate, grows, "{hz} Hz: {found:?}");
+        assert_eq!(astray(&setup) > 0.3, grows, "{hz} Hz: {}", astray(&setup));
     }
 }

@@ -24,8 +24,8 @@
 //! grows.
 //!
 //! All of it is local. It is looked at where a run starts, and where its references lead, with s ≡ 0: what lasts is there. Consensus comes
-//! to rest, and its last state counts; along the motion of a target it is the mean of r, an estimate as for any loop that changes with
-//! time. Agents under other laws are looked at again after some periods by themselves, over all of them where few numbers follow a target; a
+//! to rest, and its last state counts, of agents under other laws after some periods by themselves; along the motion of a target or a leader deviations are
+//! followed for as long as little work leads (`way`). A
 //! trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its largest weights;
 //! what grows then is not shown to, nor is what would have been seen in the time of a trial. A loop that is bad at
 //! the start alone is left before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last
@@ -37,6 +37,7 @@ mod linear;
 mod network;
 mod place;
 mod trial;
+mod way;
 
 use forwardstep_sim::{AgentSetup, Periods, Setup};
 
@@ -49,6 +50,7 @@ use crate::kinds::is_lagrangian;
 
 pub use self::place::{LoopAt, LoopRate};
 pub use self::trial::Trial;
+pub use self::way::LoopAlong;
 
 /// How much larger G may be than that of the ideal loop.
 const PART: f64 = 0.02;
@@ -59,23 +61,12 @@ const AGENTS: [usize; 2] = [3, 16];
 const SCAN: (f64, u32) = (1.25, 48);
 /// The period is found to this part.
 const TOLERANCE: f64 = 1e-4;
-/// Where agents are looked at beside their start.
-struct Later {
-    /// Those under (6)–(7) after this part of the time.
-    part: f64,
-    /// Those under other laws after so many periods.
-    periods: u32,
-}
 /// The logarithm by which rounding grows beyond everything.
 const SEEN: f64 = 60.0;
 /// A friction that is none, in N m or N: it has to be positive.
 const NO_FRICTION: f64 = 1e-12;
-const LATER: [Later; 4] = [
-    Later { part: 0.25, periods: 64 },
-    Later { part: 0.5, periods: 128 },
-    Later { part: 0.75, periods: 256 },
-    Later { part: 1.0, periods: 512 },
-];
+/// When agents under other laws than (6)–(7) are looked at that nobody leads, in periods.
+const LATER: u32 = 512;
 
 /// The loops of agents as a whole, at the start and on their way.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,9 +75,13 @@ pub struct WholeLoop {
     pub period_s: f64,
     /// At the start.
     pub start: LoopAt,
-    /// Where references lead, evenly spread over the time, or later; empty where that is not known.
-    pub led: Vec<LoopAt>,
-    /// At the last of these states, with estimates that are wrong; nothing where none move.
+    /// Where references lead those that come to rest, or later; nothing where that is not known.
+    pub last: Option<LoopAt>,
+    /// Along the motion of those that are led by a target or a leader.
+    pub along: Option<LoopAlong>,
+    /// The same where the agents go with the estimates that they begin with; nothing where none move, or nothing grows with those that are right.
+    pub as_begun: Option<LoopAlong>,
+    /// At the last state that is known, with estimates that are wrong; nothing where none move.
     pub astray: Option<LoopAt>,
     /// What a trial of all agents tells.
     pub trial: Trial,
@@ -129,25 +124,30 @@ impl WholeLoop {
         let others = setup.agents.iter().any(|agent| !is_lagrangian(agent));
         let looked: Vec<usize> = (0..of).step_by(of.div_ceil(count).max(1)).collect();
         let start = Place::new(known.clone(), 0.0, 0)?.look(&looked);
-        let at = |setup: &Setup, Later { part, periods }: &Later| match on_the_way(setup, way, *part) {
-            Some((t_s, there)) => Place::new(there, t_s, *periods),
-            None if others => Place::new(setup.clone(), f64::from(*periods) * period_s, *periods),
+        let at_last = |setup: &Setup| match at_the_end(setup, way) {
+            Some((t_s, there)) => Place::new(there, t_s, LATER),
+            None if others => Place::new(setup.clone(), f64::from(LATER) * period_s, LATER),
             None => None,
         };
-        // Consensus comes to rest.
-        let is_led = setup.following().is_some() || looked.iter().any(|agent| setup.tracks(*agent));
-        let [.., last] = &LATER;
-        let places = if is_led { &LATER[..] } else { core::slice::from_ref(last) };
-        let led: Vec<LoopAt> = places.iter().filter_map(|later| at(&known, later)?.look(&looked)).collect();
-        let astray = astray(&smooth).and_then(|wrong| at(&wrong, last).or_else(|| Place::new(wrong, 0.0, 0)));
+        let is_led = |agent: &usize| setup.following().is_some() || setup.tracks(*agent);
+        let (led, free): (Vec<usize>, Vec<usize>) = looked.iter().partition(|agent| is_led(agent));
+        let along = LoopAlong::of(&known, way, &led);
+        let grows = along.as_ref().is_some_and(|along| along.grows_per_s().is_some());
+        let follows = led.iter().all(|agent| setup.tracks(*agent));
+        let as_begun = if grows && follows && moves(setup) { LoopAlong::of(&smooth, &[], &led) } else { None };
+        let rests = if along.is_some() { &free } else { &looked };
+        let last = if rests.is_empty() { None } else { at_last(&known).and_then(|place| place.look(rests)) };
+        let astray = astray(&smooth).and_then(|wrong| at_last(&wrong).or_else(|| Place::new(wrong, 0.0, 0)));
         let astray = astray.and_then(|place| place.look(&looked));
         let trial = if is_tried { Trial::of(setup) } else { None }.unwrap_or_default();
         let changes = looked.iter().any(|agent| network::changes(setup, *agent));
-        let adapts = setup.agents.iter().any(AgentSetup::estimates);
+        let adapts = moves(setup);
         Some(WholeLoop {
             period_s,
             start: start?,
-            led,
+            last,
+            along,
+            as_begun,
             astray,
             trial,
             changes,
@@ -187,7 +187,7 @@ impl WholeLoop {
         Some(low)
     }
 
-    /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong estimates, or
+    /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong or only with right estimates, or
     /// too slowly to be seen, or where one overshoots or is slowed; not shown where one may grow in some network, would if the largest
     /// weights stayed, or would have been seen to in the trial.
     pub fn answer(&self) -> PracticalAnswer {
@@ -198,6 +198,7 @@ impl WholeLoop {
         match (self.seen_per_s(), self.lasting_per_s()) {
             (Some(rate), _) => match self.changes || self.is_contradicted(rate) {
                 true => PracticalAnswer::NotShown,
+                false if self.decays_as_begun() => PracticalAnswer::Marginal,
                 false => PracticalAnswer::Inadequate,
             },
             _ if self.amplified().is_some() => PracticalAnswer::NotShown,
@@ -214,46 +215,55 @@ impl WholeLoop {
         self.answer() <= PracticalAnswer::Marginal && grows.is_none()
     }
 
-    /// Whether what grows so fast would have been seen in the trial, from whatever it begins with.
+    /// Whether what grows so fast would have been seen in the trial, from whatever it begins with. What is linearised along all of a motion grows with it, though
+    /// it need not run away, unless estimates are elsewhere than where it was linearised.
     pub(super) fn is_contradicted(&self, rate_per_s: f64) -> bool {
-        rate_per_s * self.trial.lasted_s > SEEN
+        let is_known =
+            self.along.as_ref().is_some_and(|along| along.is_gapless && along.grows_per_s() >= Some(rate_per_s));
+        rate_per_s * self.trial.lasted_s > SEEN && (self.adapts || !is_known)
+    }
+
+    /// Whether what grows does so along a motion, with estimates that are right, and not with those that the agents begin with.
+    pub(super) fn decays_as_begun(&self) -> bool {
+        let rests = self.last.as_ref().is_none_or(|last| self.growth(last).is_none());
+        rests && self.as_begun.as_ref().is_some_and(|along| along.grows_per_s().is_none())
     }
 
     /// How fast the worst mode grows by sampling in the long run, 1/s, if it does.
     pub fn lasting_per_s(&self) -> Option<f64> {
-        match &self.led[..] {
-            [] => self.growth(core::slice::from_ref(&self.start)),
-            led => self.growth(led),
-        }
+        let along = self.along.as_ref().and_then(LoopAlong::grows_per_s);
+        let last = match (&self.last, &self.along) {
+            (None, Some(_)) => None,
+            (last, _) => self.growth(last.as_ref().unwrap_or(&self.start)),
+        };
+        along.into_iter().chain(last).reduce(f64::max)
     }
 
-    /// The same where it grows e-fold within the run: more slowly it is not seen, and along a motion the mean of a few states, each linearised by
-    /// itself, is no more certain than that.
+    /// The same where it grows e-fold within the run: more slowly it is not seen.
     fn seen_per_s(&self) -> Option<f64> {
         self.lasting_per_s().filter(|rate| rate * self.end_s > 1.0)
     }
 
     /// The same at the start.
     pub fn start_per_s(&self) -> Option<f64> {
-        self.growth(core::slice::from_ref(&self.start))
+        self.growth(&self.start)
     }
 
     /// The same with estimates that are wrong, unless a mode grows with them in the ideal loop, where adaptation moves them before it has.
     pub fn astray_per_s(&self) -> Option<f64> {
         let astray =
             self.astray.as_ref().filter(|at| at.rate().ideal_per_s.is_none_or(|ideal| ideal * self.period_s <= NOISE));
-        self.growth(astray.map_or(&[], core::slice::from_ref))
+        astray.and_then(|at| self.growth(at))
     }
 
-    /// The mean, where it is more than rounding.
-    fn growth(&self, at: &[LoopAt]) -> Option<f64> {
-        let rate = at.iter().map(|at| at.rate().added_per_s()).sum::<f64>() / at.len() as f64;
-        (rate * self.period_s > NOISE).then_some(rate)
+    /// Where it is more than rounding.
+    fn growth(&self, at: &LoopAt) -> Option<f64> {
+        Some(at.rate().added_per_s()).filter(|rate| rate * self.period_s > NOISE)
     }
 
     /// The last state that was looked at.
     pub fn last(&self) -> &LoopAt {
-        self.led.last().unwrap_or(&self.start)
+        self.last.as_ref().unwrap_or(&self.start)
     }
 
     /// How much of what is heard is passed on at the last state, where that is more than all of it and more than in the ideal loop.
@@ -273,6 +283,11 @@ fn rubbed_by_nothing(setup: &Setup) -> Setup {
         forces.into_iter().flatten().for_each(|force| *force = NO_FRICTION);
     }
     setup
+}
+
+/// Whether any estimates move.
+fn moves(setup: &Setup) -> bool {
+    setup.agents.iter().any(AgentSetup::estimates)
 }
 
 /// The same with estimates that are right.
@@ -296,17 +311,10 @@ fn astray(setup: &Setup) -> Option<Setup> {
     moves.then_some(setup)
 }
 
-/// The setup as it would start where the way of its agents is after this part of the time, and when that is, s.
-fn on_the_way(setup: &Setup, way: &[Led], part: f64) -> Option<(f64, Setup)> {
-    let (mut there, mut when) = (setup.clone(), None);
-    for own in way.chunk_by(|a, b| a.agent == b.agent) {
-        let led = &own[(part * (own.len() - 1) as f64) as usize];
-        let agent = &mut there.agents[led.agent];
-        (agent.start.q, agent.start.dq) = (led.q.clone(), led.dq.clone());
-        // Left out, z is q̇ and what follows is zero, as at rest. A target of as many roots leads to one derivative less.
-        let states = if setup.tracks(led.agent) { agent.roots_per_s.len().saturating_sub(1) } else { 0 };
-        agent.start.reference = [&led.dq, &led.dz].into_iter().take(states).cloned().collect();
-        when = Some(led.t_s);
-    }
-    Some((when?, there))
+/// The setup as it would start where the way of its agents ends, and when that is, s.
+fn at_the_end(setup: &Setup, way: &[Led]) -> Option<(f64, Setup)> {
+    let ends = way.chunk_by(|a, b| a.agent == b.agent).filter_map(<[Led]>::last);
+    ends.fold(None, |there: Option<(f64, Setup)>, led| {
+        Some((led.t_s, led.put_into(there.as_ref().map_or(setup, |(_, there)| there))))
+    })
 }

@@ -62,11 +62,6 @@ impl LoopRate {
     }
 }
 
-/// Periods until those are looked at together that an agent follows a target in, under another law than (6)–(7) and with few numbers of
-/// state: its motion comes back, and what grows in a part of it may decay in another.
-const SETTLING: u32 = 64;
-const FEW_STATES: usize = 8;
-
 /// A setup whose agents are looked at: at its start, or those under other laws than (6)–(7) so many periods `later`.
 pub(super) struct Place {
     known: Setup,
@@ -118,24 +113,18 @@ impl Place {
         if is_lagrangian(&self.known.agents[agent]) {
             return Periods { begin_s: self.t_s, ..Periods::FIRST };
         }
-        let is_small = || Linear::of(&self.known, agent, 0.0, Periods::FIRST).is_some_and(|it| it.size() <= FEW_STATES);
-        if self.later > 0 && self.known.tracks(agent) && is_small() {
-            let after = SETTLING.min(self.later / 2);
-            return Periods { after, over: self.later - after, ..Periods::FIRST };
-        }
         Periods { after: self.later, ..Periods::FIRST }
     }
 
     fn linear(&self, setup: &Setup, agent: usize, faster: u32) -> Option<Linear> {
         let periods = self.periods(agent);
-        let (after, over) = (periods.after * faster, if periods.over > 1 { periods.over * faster } else { 1 });
-        Linear::of(setup, agent, degree(setup, agent), Periods { after, over, ..periods })
+        let after = periods.after * faster;
+        Linear::of(setup, agent, degree(setup, agent), Periods { after, ..periods })
     }
 
     /// How many periods pass to find what an agent of so many numbers of state does, times these.
     fn work(&self, agent: usize, size: usize) -> f64 {
-        let Periods { after, over, .. } = self.periods(agent);
-        (f64::from(after) + 2.0 * size as f64 * f64::from(over)) * size as f64
+        (f64::from(self.periods(agent).after) + 2.0 * size as f64) * size as f64
     }
 
     /// What is found at it of `agents`.
