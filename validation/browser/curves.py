@@ -90,7 +90,7 @@ def paths(browser, name):
             own = value(browser, "s.recorded(arguments[0])[0]".replace("arguments[0]", str(times.index(row["t_s"]))))
             found = [row[f"{agents[0]}, {'xyz'[axis]}"] for axis in own["coordinates"]]
             expect(all(abs(a - b) < TOLERANCE_M for a, b in zip(found, own["tip"])), f"{name}: at {row['t_s']} s the path is at {found}, the tip at {own['tip']}")
-        expect(any(key.endswith(", wanted, z") for key in rows[0]), f"{name}: what is wanted has no path among {list(rows[0])}")
+        expect(any(key.endswith(", desired, z") for key in rows[0]), f"{name}: what is desired has no path among {list(rows[0])}")
     if name == "six-arms":
         # Arms that agree hold their tips alike, each from its own base.
         for axis in "xyz":

@@ -74,7 +74,11 @@ fn known_digits(value: f64, error_bound: f64, most: usize) -> String {
         Some(digits) => {
             // What rounds to zero has no sign.
             let text = format!("{value:.digits$}");
-            if text.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) { text } else { text.replace('-', "") }
+            if text.bytes().any(|digit| (b'1'..=b'9').contains(&digit)) {
+                text.replace('-', "−")
+            } else {
+                text.replace('-', "")
+            }
         }
         None => format!("{value:.0} ± {error_bound:.0e}"),
     }
@@ -282,7 +286,7 @@ mod tests {
 
     #[test]
     fn only_known_digits_are_printed_and_zero_has_no_sign() {
-        assert_eq!(known_digits(-0.75, 1e-15, 6), "-0.750000");
+        assert_eq!(known_digits(-0.75, 1e-15, 6), "−0.750000");
         assert_eq!(known_digits(-1e-9, 1e-15, 6), "0.000000");
         assert_eq!(known_digits(-0.0, 0.0, 6), "0.000000");
         assert_eq!(known_digits(0.123_456_7, 4e-4, 6), "0.123");
@@ -294,7 +298,7 @@ mod tests {
             influence: Vec::new(),
             influence_error: 0.0,
         };
-        assert_eq!(small([5e-7, -1.25e-9]).known_digits(), ["0.000000500", "-0.000000001"]);
+        assert_eq!(small([5e-7, -1.25e-9]).known_digits(), ["0.000000500", "−0.000000001"]);
         assert_eq!(small([0.5, 1e-9]).known_digits(), ["0.500000", "0.000000"]);
     }
 }

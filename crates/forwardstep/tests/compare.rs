@@ -215,6 +215,19 @@ fn mistakes_are_told_before_anything_is_run_and_nothing_is_left() {
     let assert = forwardstep(&here, &["compare", "--force", "run", "run", "--out", "run"]).failure().code(2);
     assert!(stderr(&assert).contains("not written by `compare`"), "{}", stderr(&assert));
     assert!(!here.path().join("run/compare.json").exists());
+    // One that was interrupted left its runs.
+    for (kept, status) in [(false, 0), (true, 2)] {
+        let cut = here.path().join("cut");
+        fs::create_dir_all(cut.join("later")).unwrap();
+        fs::rename(here.path().join("run"), cut.join("points")).unwrap();
+        if kept {
+            fs::write(cut.join("notes.txt"), "mine").unwrap();
+        }
+        let arguments = ["compare", "--force", "cut/points", "cut/points", "--out", "cut"];
+        forwardstep(&here, &arguments).code(status);
+        fs::rename(cut.join("points"), here.path().join("run")).unwrap();
+        fs::remove_dir_all(cut).unwrap();
+    }
 }
 
 #[test]

@@ -219,3 +219,21 @@ fn what_samples_of_a_scenario_without_any_refuse_is_said_to_be_theirs() {
     let said = stderr(&forwardstep(&folder, &["sampling-limit", "long.toml"]).code(2));
     assert!(said.contains("with the samples that are tried") && said.contains("`time.end_s` be shorter"), "{said}");
 }
+
+/// All of its mistakes were collected, in gigabytes, before twenty of them were shown.
+#[test]
+fn regress_a_scenario_is_refused_that_is_larger_than_any() {
+    let folder = folder();
+    fs::write(folder.path().join("many.toml"), "[[agents]]\n".repeat(1_600_000)).unwrap();
+    let error = stderr(&forwardstep(&folder, &["check", "many.toml"]).code(2));
+    assert!(error.contains("larger than 16 MiB, as no scenario is"), "{error}");
+}
+
+/// A file of the run was asked for, without its name.
+#[test]
+fn regress_the_scenario_in_the_folder_of_a_run_is_named() {
+    let folder = folder();
+    forwardstep(&folder, &["run", "first-order", "--out", "made"]).success();
+    let error = stderr(&forwardstep(&folder, &["upgrade", "made"]).code(2));
+    assert!(error.contains("give the scenario in it, `made/scenario.toml`"), "{error}");
+}

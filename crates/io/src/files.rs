@@ -12,6 +12,9 @@ use crate::foreign::{Foreign, foreign_bytes, foreign_text};
 /// Files larger than this are not read.
 pub(crate) const MOST_BYTES: u64 = 1 << 26;
 
+/// The same of scenarios.
+const MOST_BYTES_OF_A_SCENARIO: u64 = 1 << 24;
+
 /// Why a text file cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
@@ -31,6 +34,9 @@ pub enum ReadError {
     /// It is larger than anything that is meant to be read.
     #[error("it is larger than {} MiB", MOST_BYTES >> 20)]
     TooLarge,
+    /// It is larger than any scenario: all of its mistakes would be collected at once.
+    #[error("it is larger than {} MiB, as no scenario is", MOST_BYTES_OF_A_SCENARIO >> 20)]
+    LargeScenario,
     /// It holds something else than UTF-8.
     #[error("it is no UTF-8 text: byte {byte:#04x} in line {line}, column {column}")]
     NotUtf8 {
@@ -151,6 +157,12 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
     let mut bytes = Vec::new();
     open_file(path)?.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
     text_of(bytes)
+}
+
+/// Reads a scenario.
+pub(crate) fn read_scenario_text(path: &Path) -> Result<String, ReadError> {
+    let text = read_text(path)?;
+    if text.len() as u64 > MOST_BYTES_OF_A_SCENARIO { Err(ReadError::LargeScenario) } else { Ok(text) }
 }
 
 /// The text that these bytes are, if they are of reasonable size.

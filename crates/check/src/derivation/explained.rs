@@ -184,7 +184,11 @@ impl Case<'_> {
         let (reduction, reduced) = self.reduction(&upper, dynamics, (&notation, &places));
         let degrees = [dynamics.upper().degree(lower_order), reduced.as_ref().map_or(0, |r| r.degree(lower_order))];
         let left = reduced.as_ref().map_or(0, |reduced| reduced.derivatives);
-        let mut control = virtual_control(dynamics, &notation, &places);
+        let plant = match self.step {
+            Step::Chain(order, ChainStepKind::Backstepping, _) => order,
+            _ => dynamics.plant,
+        };
+        let mut control = virtual_control(plant, dynamics, &notation, &places);
         if let Step::Thrust(ThrustStep::ByAcceleration, _) = self.step {
             control = control.words(words::BY_ACCELERATION);
         }
@@ -413,7 +417,8 @@ fn low(alpha: &BigRational, beta: &BigRational) -> Polynomial {
     Polynomial::new(vec![alpha.clone(), beta.clone()])
 }
 
-fn virtual_control(dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
+/// Of a plant of this order, of which z may stand for an entry below the highest derivative.
+fn virtual_control(plant: usize, dynamics: &Dynamics, notation: &Notation, places: &Places) -> Section {
     let (n, order) = (dynamics.total_order(), dynamics.order);
     let position = notation.position;
     let followed = match dynamics.plant.saturating_sub(1) {
@@ -421,15 +426,14 @@ fn virtual_control(dynamics: &Dynamics, notation: &Notation, places: &Places) ->
         1 => format!("the derivative of {position}"),
         k => format!("the {} derivative of {position}", words::ordinal(k)),
     };
-    let grows = match order {
-        0 => "one less, as in backstepping",
-        1 => "the same, which is order invariance",
-        _ => "more, which is order increment",
+    let grows = match n.cmp(&plant) {
+        core::cmp::Ordering::Less => "one less, as in backstepping",
+        core::cmp::Ordering::Equal => "the same, which is order invariance",
+        core::cmp::Ordering::Greater => "more, which is order increment",
     };
     let words = format!(
-        "The plant is of order {} with respect to {position}, and the reference dynamics are of order {n}: {grows}. z is what {followed} should \
+        "The plant is of order {plant} with respect to {position}, and the reference dynamics are of order {n}: {grows}. z is what {followed} should \
          be, and s is what is missing.",
-        dynamics.plant,
     );
     let mut section = Section::new(Subject::VirtualControl).words(words);
     let q = Quantity::own(Letter::Position);

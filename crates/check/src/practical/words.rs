@@ -242,7 +242,8 @@ fn whole(found: &WholeLoop) -> String {
             if found.adapts { ", or adapt more slowly" } else { ", or let roots, weights or λ be smaller" }
         ),
         (Some(rate), _, _) if found.answer() == PracticalAnswer::Inadequate => {
-            format!("a mode grows at {}/s; {advice}", rounded(rate))
+            let right = if found.adapts { " with estimates that are right" } else { "" };
+            format!("a mode grows at {}/s{right}; {advice}", rounded(rate))
         }
         (Some(rate), _, _) if found.decays_as_begun() && found.answer() == PracticalAnswer::Marginal => format!(
             "once estimates are right a mode grows at {}/s, and none does as they start; {advice}",

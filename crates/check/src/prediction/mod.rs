@@ -32,6 +32,7 @@ pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat,
 pub use ideal::{NoIdeal, ideal, told_before};
 pub(crate) use ideal::{family_start, order};
 pub use period::{NoPeriodRate, PeriodRate, period_rate, period_rate_within};
+pub use repeats::NoRepeat;
 pub(crate) use repeats::Repeats;
 pub use roots::{NoRate, Rate, rate};
 pub use settled::{SHARE, Settled, only_passes, settled};

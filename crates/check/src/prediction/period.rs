@@ -20,7 +20,7 @@ use thiserror::Error;
 use super::cascade::{CascadeSpread, NoCascade};
 use super::course::positions;
 use super::ideal::{NoIdeal, ideal};
-use super::repeats::{MOST_ROUNDS, Repeats};
+use super::repeats::{NoRepeat, Repeats};
 use super::roots::eigenvalues::eigenvalues;
 use super::unfinished::{Unfinished, completed};
 use crate::hypothesis::numbers::rounded;
@@ -49,9 +49,17 @@ pub enum NoPeriodRate {
     /// The cascaded variables bound nothing.
     #[error(transparent)]
     Cascade(#[from] NoCascade),
-    /// Something is drawn, logged, or switches once, or periods have no common multiple that is short enough.
-    #[error("switching and delays have no common period of at most {MOST_ROUNDS} rounds")]
-    NoPeriod,
+    /// Nothing repeats itself that is known to.
+    #[error(transparent)]
+    NoPeriod(#[from] NoRepeat),
+    /// Every period leaves less than the one before, as where several eigenvalues are about as large: the largest was not seen yet.
+    #[error(
+        "what a period leaves still falls, from {:.1} % to {:.1} % over those that were seen, as it does where several modes are about as slow", 100.0 * seen[0], 100.0 * seen[1]
+    )]
+    StillFalls {
+        /// What a period leaves at the beginning and at the end, as a factor.
+        seen: [f64; 2],
+    },
     /// The recording of a few periods would be too large.
     #[error("there are {agents} agents, too many to record {least} periods of them", least = PERIODS[0])]
     TooLarge {
@@ -128,7 +136,10 @@ pub fn period_rate_within(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<PeriodRate, NoPeriodRate> {
     let mut alone = on_one_axis(ideal(setup)?);
-    let Some(Repeats::Every(period_s)) = Repeats::of(setup) else { return Err(NoPeriodRate::NoPeriod) };
+    let period_s = match Repeats::of(setup)? {
+        Repeats::Every(period_s) => period_s,
+        Repeats::Always => return Err(NoRepeat::NothingChanges.into()),
+    };
     let [mut periods, most] = PERIODS;
     let agents = alone.agents.len();
     let recorded = MOST_NUMBERS / (ROWS * COLUMNS * agents.max(1));
@@ -210,11 +221,61 @@ fn factor(widths: &[f64], apart: &[DVector<f64>], period_s: f64, together: usize
     let factor = fitted(&apart[clear.saturating_sub(FITTED).max(1).min(clear)..clear], mean).unwrap_or(mean);
     let off = |pair: &[f64]| (pair[1] / pair[0] / factor - 1.0).abs();
     let wavers = widths[first..].windows(2).map(off).fold(0.0, f64::max);
+    let wavers = match drift(widths) {
+        Some(Drift { seen, comes_to }) => {
+            let still = FARTHER * (factor / comes_to - 1.0).abs();
+            if still > MOST_DRIFT {
+                return Err(NoPeriodRate::StillFalls { seen });
+            }
+            wavers.max(still)
+        }
+        None => wavers,
+    };
     let rate_per_s = libm::log(factor) / (period_s * together as f64);
     let factor = libm::pow(factor, 1.0 / together as f64);
     // So far are the factors of single periods from it where those of so many together are.
     let wavers = libm::pow(1.0 + wavers, 1.0 / together as f64) - 1.0;
     Ok(PeriodRate { period_s, factor, rate_per_s, wavers, periods: together * periods })
+}
+
+/// How the factors of single periods still fall.
+struct Drift {
+    /// From what to what.
+    seen: [f64; 2],
+    /// What they come to if they go on so.
+    comes_to: f64,
+}
+
+/// Stretches of what was seen that are compared, and how many of them are behind the beginning.
+const STRETCHES: usize = 6;
+const BEHIND: usize = 4;
+/// Periods of a stretch at least: factors of single ones waver.
+const PERIODS_OF_A_STRETCH: usize = 2;
+/// A fall of ln factor from one stretch to the next that is rounding.
+const STEADY: f64 = 1e-4;
+/// What factors come to is known no better than this many times the way there, and no rate is given where that is more than this part of it.
+const FARTHER: f64 = 1.5;
+const MOST_DRIFT: f64 = 0.1;
+
+/// Of m equal eigenvalues ρ, or of some that are close, a disagreement falls like k^(m−1) ρ^k: the factor of the k-th period is about
+/// ρ (1 + (m − 1)/k) and falls from period to period, ever more slowly, and no mean of it is ρ. It goes to where ln factor, as a line over 1/k, meets
+/// 1/k = 0. `None` where the means of stretches do not fall one after the other.
+fn drift(widths: &[f64]) -> Option<Drift> {
+    let each = (widths.len() - 1) / STRETCHES;
+    if each < PERIODS_OF_A_STRETCH {
+        return None;
+    }
+    let from = widths.len() - 1 - BEHIND * each;
+    let ends: Vec<usize> = (0..=BEHIND).map(|stretch| from + stretch * each).collect();
+    let mean = |pair: &[usize]| libm::log(widths[pair[1]] / widths[pair[0]]) / each as f64;
+    let means: Vec<f64> = ends.windows(2).map(mean).collect();
+    let middle = |pair: &[usize]| 2.0 / (pair[0] + pair[1]) as f64;
+    let over: Vec<f64> = ends.windows(2).map(middle).collect();
+    let falls = means.windows(2).all(|pair| pair[0] - pair[1] > STEADY);
+    let [first, .., before, last] = means[..] else { return None };
+    let [.., wide, narrow] = over[..] else { return None };
+    let comes_to = last - (before - last) / (wide - narrow) * narrow;
+    falls.then(|| Drift { seen: [libm::exp(first), libm::exp(last)], comes_to: libm::exp(comes_to) })
 }
 
 /// Periods that are fitted at most, the last ones, and by how many eigenvalues.

@@ -6,6 +6,7 @@ use forwardstep_sim::delay::{Delay, PiecewiseConstant, SawTooth, Sinusoid};
 use forwardstep_sim::schedule::{Extent, Periodic};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
+use thiserror::Error;
 
 /// The common period is no longer than this many times the longest one.
 pub(super) const MOST_ROUNDS: u32 = 60;
@@ -19,30 +20,51 @@ pub(crate) enum Repeats {
     Every(f64),
 }
 
+/// Why a network is not known to repeat itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum NoRepeat {
+    /// Graphs are drawn, come from a table or switch once.
+    #[error("graphs do not come in turns that repeat themselves")]
+    Graphs,
+    /// A weight is a formula.
+    #[error("a weight is a formula of the time, whose period is not looked for")]
+    Weights,
+    /// A delay is drawn, logged, a formula, or jumps once.
+    #[error("a delay is drawn, logged, a formula or jumps once")]
+    Delays,
+    /// Periods have no common multiple that is short enough.
+    #[error("switching and delays have no common period of at most {MOST_ROUNDS} rounds")]
+    NoMultiple,
+    /// There is nothing that repeats itself.
+    #[error("nothing in the network changes")]
+    NothingChanges,
+}
+
 impl Repeats {
-    /// From the numbers as they are written; none where something is drawn, logged, a formula, or happens once, or periods have no
-    /// common multiple that is short enough.
-    pub(crate) fn of(setup: &Setup) -> Option<Repeats> {
+    /// From the numbers as they are written.
+    pub(crate) fn of(setup: &Setup) -> Result<Repeats, NoRepeat> {
         let network = &setup.network;
         // What an author says of a signal reaches as far as it was tried.
-        let is_known = network.schedule.known().extent != Extent::Horizon;
-        if !is_known || network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none()) {
-            return None;
+        if network.schedule.known().extent == Extent::Horizon {
+            return Err(NoRepeat::Graphs);
+        }
+        if network.schedule.graphs.iter().flatten().any(|edge| edge.weight.constant().is_none()) {
+            return Err(NoRepeat::Weights);
         }
         let mut periods: Vec<BigRational> = Vec::new();
         if network.schedule.constant_graph().is_none() {
-            let periodic = network.schedule.downcast::<Periodic>()?;
+            let periodic = network.schedule.downcast::<Periodic>().ok_or(NoRepeat::Graphs)?;
             periods.push(periodic.dwell_s.iter().copied().map(Number::written).sum());
         }
         for delay in network.used_delays().map(|index| &network.delays[index]) {
             if !delay.is_constant() {
-                periods.push(Number::written(period_of(delay)?));
+                periods.push(Number::written(period_of(delay).ok_or(NoRepeat::Delays)?));
             }
         }
-        let Some(longest) = periods.iter().max() else { return Some(Repeats::Always) };
+        let Some(longest) = periods.iter().max() else { return Ok(Repeats::Always) };
         let fits = |whole: &BigRational| periods.iter().all(|period| (whole / period).is_integer());
         let rounds = (1..=MOST_ROUNDS).map(|rounds| longest * BigRational::from_integer(rounds.into()));
-        rounds.into_iter().find(fits)?.to_f64().map(Repeats::Every)
+        rounds.into_iter().find(fits).and_then(|whole| whole.to_f64()).map(Repeats::Every).ok_or(NoRepeat::NoMultiple)
     }
 }
 

@@ -4,12 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use forwardstep_check::prediction::{
-    NoCascade, NoPeriodRate, NoRate, Settled, Unfinished, period_rate, period_rate_within, rate,
+    NoCascade, NoPeriodRate, NoRate, NoRepeat, Settled, Unfinished, period_rate, period_rate_within, rate,
 };
 use forwardstep_check::{NoIdeal, NotFixed, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink, SawTooth};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
@@ -187,6 +187,52 @@ fn a_period_leaves_what_its_phases_leave() {
     assert!((found.rate_per_s + 0.6).abs() < 5e-3, "{found:?}");
 }
 
+/// In a row whose links take turns every agent that hears has the same factor, e^(−w T), or the e^(−κ T) of its root: as many equal eigenvalues as
+/// there are agents, and factors of single periods that fall to them ever more slowly.
+#[test]
+fn regress_rows_whose_links_take_turns_have_no_rate_that_is_too_slow() {
+    let row = |agents: usize, exchange: Exchange, weight: f64, roots: &[f64]| {
+        let mut setup = in_turns(exchange, weight, 1.0, 1.0);
+        let first = setup.agents[0].clone();
+        setup.agents = (0..agents).map(|k| AgentSetup { name: format!("m-{k}"), ..first.clone() }).collect();
+        setup.agents.iter_mut().for_each(|agent| agent.roots_per_s = roots.to_vec().into());
+        let phase = |odd: usize| {
+            let heard = (0..agents - 1).filter(|k| k % 2 == odd);
+            Phase { edges: heard.map(|k| edge(k, k + 1, weight, 0)).collect(), dwell_s: 1.0 }
+        };
+        setup.network.agents = agents;
+        setup.network.schedule = Schedule::periodic(vec![phase(0), phase(1)]);
+        setup.time.end_s = 60.0;
+        setup
+    };
+    let mut given = 0;
+    for (agents, exchange, weight, roots, rate_per_s) in [
+        (3, Exchange::PositionVelocity, 0.5, &[3.0][..], -0.25),
+        (4, Exchange::PositionVelocity, 0.5, &[3.0], -0.25),
+        (6, Exchange::PositionVelocity, 0.5, &[3.0], -0.25),
+        (8, Exchange::PositionVelocity, 0.5, &[3.0], -0.25),
+        (12, Exchange::PositionVelocity, 0.5, &[3.0], -0.25),
+        (3, Exchange::Position, 5.0, &[0.5; 4], -0.5),
+        (3, Exchange::Position, 5.0, &[0.5; 2], -0.5),
+        (3, Exchange::PositionVelocity, 5.0, &[0.5, 0.55, 0.6], -0.5),
+        (3, Exchange::Position, 5.0, &[0.47, 0.51, 0.72, 2.09], -0.47),
+    ] {
+        let exact = libm::exp(2.0 * rate_per_s);
+        match period_rate(&row(agents, exchange, weight, roots), &mut go_on) {
+            Ok(found) => {
+                let off = (found.factor / exact - 1.0).abs();
+                assert!(off <= found.wavers + 1e-4, "{agents} {roots:?}: off by {off}, {found:?}");
+                given += 1;
+            }
+            Err(NoPeriodRate::StillFalls { seen: [first, last] }) => {
+                assert!(exact < last && last < first, "{agents} {roots:?}: {first} {last}, not {exact}");
+            }
+            Err(other) => panic!("{agents} {roots:?}: {other}"),
+        }
+    }
+    assert!(given >= 2, "{given}");
+}
+
 /// Half the time a pair hears each other's positions: with σ = q₁ − q₂ and half the weight σ̈ + (κ + w/2) σ̇ + w κ σ ≈ 0 while it is switched fast.
 /// After 512 periods of 4 ms next to nothing has fallen, and a factor was read from that.
 #[test]
@@ -260,12 +306,22 @@ fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
     let saw = |period_s| Delay::new(SawTooth { min_s: 0.0, max_s: 0.1, period_s, offset_s: 0.0 });
     assert_eq!(said(&|setup| setup.network.delays[0] = saw(0.3)), None, "three periods are ten of the delay");
     let never = std::f64::consts::SQRT_2;
-    assert_eq!(said(&|setup| setup.network.delays[0] = saw(never)), Some(NoPeriodRate::NoPeriod));
+    assert_eq!(said(&|setup| setup.network.delays[0] = saw(never)), Some(NoRepeat::NoMultiple.into()));
     assert_eq!(said(&|setup| setup.network.delays.push(saw(never))), None, "no edge has it");
     let drawn = |setup: &mut Setup| {
         setup.network.schedule = Schedule::random(setup.network.schedule.graphs.clone(), [0.5, 0.5], 1);
     };
-    assert_eq!(said(&drawn), Some(NoPeriodRate::NoPeriod));
+    assert_eq!(said(&drawn), Some(NoRepeat::Graphs.into()));
+    let jumps = Delay::new(PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.2], period_s: None });
+    assert_eq!(said(&|setup| setup.network.delays[0] = jumps.clone()), Some(NoRepeat::Delays.into()));
+    let stays = |setup: &mut Setup| setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
+    assert_eq!(said(&stays), Some(NoRepeat::NothingChanges.into()));
+    let breathes = |setup: &mut Setup| {
+        let weight = Expression::number(1.0) + Expression::variable(0).sin_of() * 0.5;
+        setup.network.weights = vec![BoundedFormula::new(weight, 200.0)];
+        setup.network.schedule.graphs[0][0].weight = Weight::Formula(0);
+    };
+    assert_eq!(said(&breathes), Some(NoRepeat::Weights.into()));
     let apart = |setup: &mut Setup| {
         let nobody = Phase { edges: Vec::new(), dwell_s: 0.5 };
         let one = Phase { edges: vec![edge(0, 2, 1.0, 0)], dwell_s: 0.5 };
@@ -315,7 +371,7 @@ fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() 
     let course = super::course::predicted(&lossy);
     assert!(course.is_reached() && course.within.unwrap().iter().all(|[low, high]| high - low < 0.1));
     assert_eq!(rate(&lossy), Err(NoRate::NotFixed(NotFixed::VaryingDelay)));
-    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoPeriodRate::NoPeriod));
+    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoRepeat::Delays.into()));
 }
 
 #[test]

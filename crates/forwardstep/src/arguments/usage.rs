@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn regress_wishes_and_negative_numbers_among_options_are_answered() {
         for (word, part) in [
-            ("--obstacles", "joints keep to the position limits"),
+            ("--obstacles", "ends a run where a joint leaves the position limits"),
             ("--floating-base", "`robot.vehicle`"),
             ("-1", "negative"),
             ("own.toml", "compare A B"),

@@ -106,7 +106,7 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
         Err(error) => {
             let reason = names::reason(&scenario.setup, error);
-            console.line(format_args!("  {DIM}predicted agreement: none, since {reason}{DIM:#}"));
+            console.line(format_args!("  {DIM}no exact value is predicted that all agree upon, since {reason}{DIM:#}"));
         }
     }
     show_practical(practical, console);

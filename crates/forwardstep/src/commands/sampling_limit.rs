@@ -110,7 +110,10 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
     console.line(match found.rule {
         None => "  rule       – ms: none says anything of it".to_owned(),
         Some(Rule { period_s, linearised: false }) => {
-            format!("  rule       {} ms: the sampling margin σ is 1 before the run", ms(Some(period_s)))
+            format!(
+                "  rule       {} ms: at that period the sampling margin σ, as it is known before the run, is 1",
+                ms(Some(period_s))
+            )
         }
         Some(Rule { period_s, linearised: true }) => {
             format!(
@@ -119,13 +122,17 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
             )
         }
     });
-    let accepted = format!("{}at most {:.2e} remains at the end", bounded(found.peak_error, ", and "), found.remains);
+    let accepted = format!(
+        "accepted is that {}at most {:.2e} remains at the end",
+        bounded(found.peak_error, ", and "),
+        found.remains
+    );
     let runs = if found.trials.len() == 1 { "1 run".to_owned() } else { format!("{} runs", found.trials.len()) };
     let least = if found.remark == Some(LimitRemark::LongestTried) { "at least " } else { "" };
     let remark = found.remark.map_or_else(String::new, |remark| format!("; {}", remark.words()));
     console.line(match (found.measured_s, found.remark) {
         (Some(measured_s), _) => {
-            format!("  measured   {least}{} ms: {accepted}; {runs}{remark}", to_digits(1e3 * measured_s, 4))
+            format!("  measured   {least}{} ms; {accepted}; {runs}{remark}", to_digits(1e3 * measured_s, 4))
         }
         (None, None) => format!("  measured   – ms: no period that was tried gave this: {accepted}; {runs}"),
         (None, Some(remark)) => format!("  measured   – ms: {}", remark.words()),

@@ -22,7 +22,7 @@ use super::promise::list;
 fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String {
     let until = match exceeds_until_s {
         None => format!("below γ = {gamma} all the time"),
-        Some(until_s) => format!("γ = {gamma} or more until {} s", instant(until_s)),
+        Some(until_s) => format!("at times above γ = {gamma}, until {} s", instant(until_s)),
     };
     format!("driven by {} at most, at {} s; {until}", short(peak), instant(peak_s))
 }

@@ -92,6 +92,9 @@ fn val_a_row_of_the_sampling_table_is_what_runs_say() {
     // What no period can do.
     let never = ["sampling-limit", "theorem-2", "--disagreement", "1e-300"];
     let never = stdout(&forwardstep(&here, &never).code(1));
-    assert!(never.contains("\n  measured   – ms: no period that was tried gave this: |s| ≤ "), "{never}");
+    assert!(
+        never.contains("\n  measured   – ms: no period that was tried gave this: accepted is that |s| ≤ "),
+        "{never}"
+    );
     forwardstep(&here, &["sampling-limit", "theorem-2", "--late", "1.5"]).code(2);
 }

@@ -73,7 +73,7 @@ fn regress_no_limit_of_sampling_is_measured_where_nothing_can_be() {
         (assert.get_output().status.code(), stdout(&assert))
     };
     let (status, short) = limit("[[0], [1]]", "0.01");
-    assert!(status == Some(0) && short.contains("measured   at least 1.000 ms: "), "{short}");
+    assert!(status == Some(0) && short.contains("measured   at least 1.000 ms; accepted is that |s|"), "{short}");
     assert!(
         short.contains("; 1 run; longer ones were not tried: they would leave a run fewer than ten samples"),
         "{short}"
@@ -221,7 +221,9 @@ fn regress_what_failed_in_a_run_is_said_beside_its_hypothesis() {
     let said = stdout(&forwardstep(&folder, &["run", "pilot-ship", "--out", "ship"]).success());
     let words = said.lines().find(|line| line.trim_start().starts_with("in words")).unwrap();
     assert!(
-        words.contains("following: ") && words.contains(" from pilot, and pilot 0.0017 m from its target, at most"),
+        words.contains("following: ")
+            && words.contains(" from pilot (ship-")
+            && words.contains("), and pilot 0.0017 m from its target, at most"),
         "{words}"
     );
     let page = fs::read_to_string(folder.path().join("ship/report.html")).unwrap();
@@ -308,4 +310,35 @@ fn regress_the_largest_predicted_torques_are_on_the_page() {
     let (table, _) = table.split_once("The largest 24 of 30; summary.json has all.").unwrap();
     assert!(table.contains("m-30 ·") && table.contains("m-1 ·") && !table.contains("m-15 ·"), "{table}");
     assert!(table.find("m-1 ·") < table.find("m-30 ·"), "{table}");
+}
+
+/// Chains of order ten were called plants of order one, of which references of order ten are an increment.
+#[test]
+fn regress_the_order_of_a_chain_is_told_and_not_that_of_what_z_leads() {
+    let folder = folder();
+    let said = stdout(&forwardstep(&folder, &["explain", "strict-feedback-order-10"]).success());
+    assert!(
+        said.contains(
+            "The plant is of order 10 with respect to x, and the reference dynamics are of order 10: the same"
+        ),
+        "{said}"
+    );
+}
+
+/// A leader is driven by 4.46 at most, and the first time beyond γ = 4.42 was one at 4.4204: "γ is 4.42, but at t = 52.4 s it is 4.42".
+#[test]
+fn regress_a_witness_is_clear_where_there_is_one() {
+    let folder = folder();
+    let text = SHIPPED_SCENARIOS.iter().find(|scenario| scenario.name == "theorem-8").unwrap().text;
+    let (before, after) = text.split_once("motion.sinusoids").unwrap();
+    let (_, after) = after.split_once("\n]\n").unwrap();
+    let swings = format!("{before}motion.formulas = [\"1.46*sin(1.07*t) + 0.4*cos(1.51*t)\", 0]\n{after}")
+        .replace("end_s = 40", "end_s = 80")
+        .replace("design = \"continuous\"", "design = \"observer\"")
+        .replace("roots_per_s = [1.0]", "roots_per_s = [1.68, 2.1]")
+        .replace("gain = 2 ", "gain = 4.42 ");
+    fs::write(folder.path().join("swings.toml"), swings).unwrap();
+    let said = stdout(&forwardstep(&folder, &["check", "swings.toml"]).code(1));
+    let (gamma, reached) = said.split_once("γ is ").and_then(|(_, rest)| rest.split_once(", but at")).unwrap();
+    assert!(!reached.contains(&format!("it is {gamma}\n")), "{said}");
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{ARMS, contents, differences, is_rebuilt};
 use crate::support::{folder, forwardstep, stderr};
+use forwardstep::io::output::RunFolder;
 
 #[test]
 fn what_is_wrong_is_said_and_nothing_is_harmed() {
@@ -88,6 +89,18 @@ fn what_is_wrong_is_said_and_nothing_is_harmed() {
             "line 3: `soon` in the column `t_s` is no number",
         ),
         ("trajectory.csv", Some(replaced("trajectory.csv", "\n0.1,", "\n7,")), without, "time does not rise at row 3"),
+        (
+            "trajectory.csv",
+            Some(replaced("trajectory.csv", "\n3.0,", "\n1e9,")),
+            without,
+            "its last row is at t = 1000000000 s, and the scenario ends at 3 s",
+        ),
+        (
+            "trajectory.csv",
+            Some(replaced("trajectory.csv", "\n3.0,", "\ninf,")),
+            without,
+            "its last row is at t = inf s",
+        ),
         (
             "trajectory.csv",
             Some(replaced("trajectory.csv", "arm-1.q.shoulder", "arm-1.p.shoulder")),
@@ -179,4 +192,17 @@ fn a_folder_that_is_closed_to_us_is_an_error() {
         let error = stderr(&forwardstep(&folder, &["report", "run"]).code(2));
         assert!(error.contains("trajectory.parquet`: permission denied") && error.contains("readable"), "{error}");
     }
+}
+
+/// The advice was to run it again.
+#[test]
+fn regress_a_run_without_rows_yet_is_not_said_to_be_over() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("begun")).unwrap();
+    let claimed = RunFolder::create(folder.path().join("begun"), false).unwrap();
+    let error = stderr(&forwardstep(&folder, &["report", "begun"]).code(2));
+    assert!(error.contains("a run is writing to it and has no rows yet"), "{error}");
+    drop(claimed);
+    let error = stderr(&forwardstep(&folder, &["report", "begun"]).code(2));
+    assert!(error.contains("run the scenario again"), "{error}");
 }

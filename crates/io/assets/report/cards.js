@@ -254,7 +254,7 @@ for (const { id, entries } of index.families) {
     build: ([k]) => {
       const entry = entries[+k];
       if (!entry) return { series: [] };
-      const wanted = entry.wanted.length ? ofAgents(entry.wanted, null, { suffix: ", wanted", dash: [4, 3], width: 1.1 }) : [];
+      const wanted = entry.wanted.length ? ofAgents(entry.wanted, null, { suffix: ", commanded", dash: [4, 3], width: 1.1 }) : [];
       const lines = entry.lines.length > 6 ? [] : entry.lines;
       return { unit: entry.unit, lines, series: [...ofAgents(entry.series, null), ...wanted] };
     },

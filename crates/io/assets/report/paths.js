@@ -22,7 +22,7 @@ const spacePaths = (() => {
     const curves = spatial.flatMap((body) => {
       const agent = body.vertex;
       const label = leading(body.name, body.leads);
-      const wanted = body.target.length > 0 && body.kind !== "spacecraft" ? [{ body, agent, label: `${label}, wanted`, dash: [4, 3], wanted: true, points: along(ownTarget, body) }] : [];
+      const wanted = body.target.length > 0 && body.kind !== "spacecraft" ? [{ body, agent, label: `${label}, desired`, dash: [4, 3], wanted: true, points: along(ownTarget, body) }] : [];
       return [...wanted, { body, agent, label, dash: body.motion ? [8, 3] : [], points: along(ownPoint, body) }];
     });
     return (made = { times: rows.map((row) => sceneTimes[row]), curves: curves.filter(({ points }) => points.some(finite)) });

@@ -11,7 +11,7 @@ use super::names::{agent_name, gap_unit_on, gap_words, unit};
 use super::prediction::{PredictedRate, Predictions};
 use super::record::RunRecord;
 use super::table::Table;
-use super::trend::{Trend, is_slowing, lately};
+use super::trend::{Trend, falls_steadily, is_slowing, lately};
 use crate::scenario::Goal;
 use crate::wording::about;
 
@@ -77,7 +77,7 @@ impl Conclusion {
         let sentence = end.sentence(record.setup, arrival, trend);
         // What passes is about as far off as it was lately.
         let left = if passes { lately(t_s, &series.overall) } else { last };
-        let pace = Pace { trend, slows, passes };
+        let pace = Pace { trend, slows, steadily: falls_steadily(t_s, &series.overall), passes };
         let advice = if reached { Vec::new() } else { advice(record, metrics, pace, bound / left) };
         Some(Conclusion { reached, sentence, advice })
     }
@@ -103,8 +103,8 @@ struct End {
     /// The agent furthest from its target; two agents furthest apart.
     agents: Vec<usize>,
     gap: f64,
-    /// How far an agent that leads is from its target, and the others from it, with the axes.
-    led: Option<[(f64, usize); 2]>,
+    /// How far an agent that leads is from its target, and the others from it, with axis and agent.
+    led: Option<[(f64, usize, usize); 2]>,
     /// The largest speed of any agent on an axis with the same unit, where it is recorded and agents should come to rest.
     speed: Option<f64>,
 }
@@ -146,7 +146,7 @@ impl End {
         let errors = |of: &dyn Fn(usize) -> bool| {
             let all = (0..table.agents()).filter(|agent| of(*agent)).flat_map(|agent| {
                 let column = move |axis| table.column(agent, Signal::Error, axis).and_then(last_of);
-                (0..series.per_axis.len()).filter_map(move |axis| Some((column(axis)?.abs(), axis)))
+                (0..series.per_axis.len()).filter_map(move |axis| Some((column(axis)?.abs(), axis, agent)))
             });
             all.reduce(|a, b| if greater(a.0, b.0).to_bits() == a.0.to_bits() { a } else { b })
         };
@@ -188,12 +188,13 @@ impl End {
             }
             (Gap::Disagreement, _) => ("agreed", format!("{size} apart")),
             (Gap::Error, true) => match errors {
-                Some([(own, own_axis), (others, axis)]) => {
+                Some([(own, own_axis, _), (others, axis, other)]) => {
                     let leader = setup.leading_agent().unwrap_or(first);
                     let [own, others] = [(own, own_axis), (others, axis)]
                         .map(|(size, axis)| sized(*size, &gap_unit_on(setup, first, *axis)));
                     let name = agent_name(setup, leader);
-                    ("following", format!("{others} from {name}, and {name} {own} from its target,"))
+                    let whose = agent_name(setup, *other);
+                    ("following", format!("{others} from {name} ({whose}), and {name} {own} from its target,"))
                 }
                 None => ("following", format!("{size} from the leader")),
             },
@@ -232,15 +233,17 @@ struct Pace {
     trend: Trend,
     /// It falls more and more slowly.
     slows: bool,
+    /// It falls from row to row.
+    steadily: bool,
     /// It is small only in passing.
     passes: bool,
 }
 
 /// What to change: `share` of the gap is what may be left. With its trend comes whether that slows down.
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> Vec<String> {
-    let Pace { trend, slows, passes } = pace;
+    let Pace { trend, slows, steadily, passes } = pace;
     let mut advice: Vec<String> = Vec::new();
-    let takes_s = slow_s(record.prediction.as_ref(), metrics, share);
+    let takes_s = slow_s(record.prediction.as_ref(), metrics, share, trend);
     let stopped = record.outcome.ending.before_horizon_s().is_some();
     // Where messages do not reach everybody no time is enough.
     let violated = |id: Id| record.verdicts.hypotheses.iter().any(|it| it.id == id && it.answer() == Answer::Violated);
@@ -258,14 +261,17 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
                 "run longer, and record more often: how long a gap takes that swings through zero cannot be told from its end".into()
             } else if slows {
                 format!("run longer: it comes closer more and more slowly, so `time.end_s = {end_s}` at least")
+            } else if !steadily {
+                format!("run longer: it comes closer unevenly, so `time.end_s = {end_s}` at least")
             } else {
-                format!("run longer: at this rate `time.end_s = {end_s}` would be enough")
+                format!("run longer: at this rate `time.end_s = {end_s}` would be about enough")
             });
         }
     }
     // A time has been advised, with room.
+    let at_least = if matches!(trend, Trend::Falls(_)) { "" } else { " at least" };
     let needs = |takes_s: f64| {
-        if advice.is_empty() { format!(": it needs some {} s more", nice(takes_s)) } else { String::new() }
+        if advice.is_empty() { format!(": it needs some {} s more{at_least}", nice(takes_s)) } else { String::new() }
     };
     advice.extend(takes_s.map(needs).map(|needs| {
         format!("the design is slow, whatever the robots do{needs}; larger weights, more links or larger roots make it faster")
@@ -346,7 +352,7 @@ fn left_alone(prediction: Option<&Predictions>) -> Option<f64> {
 }
 
 /// How long the design takes by itself, s, where that is long beside the run, and where by itself it would not have left much less than there is.
-fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Option<f64> {
+fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64, trend: Trend) -> Option<f64> {
     let prediction = prediction?;
     if let Disagreement::Measured { last, .. } = metrics.disagreement
         && left_alone(Some(prediction)).is_some_and(|alone| last > ALONE * alone)
@@ -359,7 +365,9 @@ fn slow_s(prediction: Option<&Predictions>, metrics: &Metrics, share: f64) -> Op
         }
         PredictedRate::NoneSince(_) => return None,
     };
-    let takes_s = share.ln() / rate_per_s;
+    // What does not fall yet begins to do so later.
+    let room = if matches!(trend, Trend::Falls(_)) { 1.0 } else { ROOM };
+    let takes_s = room * share.ln() / rate_per_s;
     (rate_per_s < 0.0 && takes_s > metrics.last_t_s? / 4.0).then_some(takes_s)
 }
 

@@ -50,7 +50,7 @@ impl Gap {
             (Gap::Disagreement, true) => "max |qᵢ − qⱼ| of any coordinate",
             (Gap::Disagreement, false) => "max |qᵢ − qⱼ|",
             (Gap::Error, _) if setup.leading_agent().is_some() => {
-                "max |error| of any coordinate, of the leader from its target"
+                "max |error| of any coordinate: of the leader from its target, of the others from it"
             }
             (Gap::Error, true) => "max |error| of any coordinate",
             (Gap::Error, false) => "max |error|",

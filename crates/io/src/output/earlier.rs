@@ -40,7 +40,7 @@ struct Scenario {
     digest_blake3: String,
 }
 
-/// Refuses a folder that no comparison wrote.
+/// Refuses a folder that no comparison wrote. One that was interrupted left nothing but folders of its runs.
 pub(super) fn is_comparison(folder: &Path) -> Result<(), OutputError> {
     /// The part of the document that matters here, whatever its format.
     #[derive(Deserialize)]
@@ -53,8 +53,20 @@ pub(super) fn is_comparison(folder: &Path) -> Result<(), OutputError> {
     let document = read_text(&folder.join(DOCUMENT)).ok();
     match document.and_then(|text| serde_json::from_str::<Document>(&text).ok()) {
         Some(_) => Ok(()),
+        None if holds_only_runs(folder) => Ok(()),
         None => Err(OutputError::NotOfAComparison { path: folder.to_owned() }),
     }
+}
+
+/// Whether everything in a folder is a folder that a run wrote or was about to.
+fn holds_only_runs(folder: &Path) -> bool {
+    let Ok(entries) = folder.read_dir() else { return false };
+    let is_one = |path: &Path| {
+        let is_folder = path.symlink_metadata().is_ok_and(|about| about.is_dir());
+        is_folder
+            && (Left::of(path).is_of_a_run(path) || path.read_dir().is_ok_and(|mut inside| inside.next().is_none()))
+    };
+    entries.into_iter().all(|entry| entry.is_ok_and(|entry| is_one(&entry.path())))
 }
 
 /// Refuses a folder that must be kept: one that no run wrote, and one in which a file of a run's name is not as that run wrote it.

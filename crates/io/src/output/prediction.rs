@@ -344,7 +344,7 @@ impl CourseFound {
         let off = self.peak_torques.iter().map(|peak| peak.estimate_off).fold(0.0, f64::max);
         let near = match off {
             0.0 => String::new(),
-            off if off <= NEAR => format!("; {}", start_of_estimates(off)),
+            off if !is_far(off) => format!("; {}", start_of_estimates(off)),
             off => format!("; {}, where the torque can be another", start_of_estimates(off)),
         };
         let more = match (is_pushed(setup), setup.control.is_some()) {
@@ -371,7 +371,8 @@ impl CourseFound {
         let peak_torque = three_places(peak.value.abs());
         let clipped = self.clipped_words(setup);
         Some(format!(
-            "peak torque {peak_torque} {unit}, {agent}, {axis} at {} s{near}{at_most}{more}{clipped}",
+            "peak {} {peak_torque} {unit}, {agent}, {axis} at {} s{near}{at_most}{more}{clipped}",
+            names::input_words(setup).0,
             instant(peak.t_s)
         ))
     }
@@ -401,7 +402,7 @@ fn is_pushed(setup: &Setup) -> bool {
 
 /// How far estimates start from the truth, as a part of it.
 fn start_of_estimates(off: f64) -> String {
-    if off > NEAR {
+    if is_far(off) {
         return "estimates start far from the truth".to_owned();
     }
     // Five hundredths are five per cent, whatever is rounded.
@@ -421,7 +422,12 @@ fn middle(low: f64, high: f64) -> f64 {
 /// Axes whose value is said.
 const MOST_AXES: usize = 8;
 /// An estimate within this of the truth leaves the peak torque much as it is predicted.
-pub(super) const NEAR: f64 = 0.2;
+const NEAR: f64 = 0.2;
+
+/// Whether estimates start farther off than that, by more than rounding: four fifths are a fifth off.
+pub(super) fn is_far(off: f64) -> bool {
+    off > NEAR + 1e-9
+}
 
 #[cfg(test)]
 mod tests {

@@ -36,6 +36,8 @@ pub(super) const SCENARIO: &str = "scenario.toml";
 pub(super) const SUMMARY: &str = "summary.json";
 /// A sign, seventeen digits, a point, an exponent and a comma take 25 bytes at most; a share of what Parquet says of its pages is added.
 const MOST_BYTES_OF_A_NUMBER: u64 = 64;
+/// Rows may go on to so many times the end of the scenario as it is now.
+const FARTHEST: f64 = 1e4;
 
 /// A run that was read back from its folder.
 #[derive(Debug)]
@@ -398,6 +400,11 @@ pub(super) fn assign(
     }
     if !expected.t_s.first().is_none_or(|first| first.is_finite()) {
         return Err(TableError::Times { row: 1 });
+    }
+    // A scenario may have been shortened since; what takes its time by how far rows go would not come to an end.
+    let end_s = setup.time.end_s;
+    if let Some(t_s) = expected.t_s.last().copied().filter(|last| *last > FARTHEST * end_s) {
+        return Err(TableError::Beyond { t_s, end_s });
     }
     let (recorded, leads) = header[1..].split_at(expected.columns.len());
     let mut missing = Vec::new();

@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use super::comparison;
 use super::error::OutputError;
+use super::folder::RunFolder;
 use super::journal::JournalError;
 use super::stored_table::ParquetProblem;
 use super::summary::FORMAT;
@@ -185,6 +186,14 @@ pub enum TableError {
         /// How many there should be.
         written: usize,
     },
+    /// Time goes on far behind the end that the scenario states, or for ever.
+    #[error("its last row is at t = {t_s} s, and the scenario ends at {end_s} s")]
+    Beyond {
+        /// The last time, s.
+        t_s: f64,
+        /// Where the scenario ends, s.
+        end_s: f64,
+    },
     /// Time goes back, or is no number.
     #[error("time does not rise at row {row}")]
     Times {
@@ -205,6 +214,9 @@ impl RestoreError {
             }
             RestoreError::NotARun { path, .. } if path.join(comparison::PAGE).is_file() => {
                 "it is a comparison: give one of the runs that it compares".into()
+            }
+            RestoreError::NotARun { path, .. } if RunFolder::is_in_use(path) == Some(true) => {
+                "a run is writing to it and has no rows yet: wait a second, or use `--follow`".into()
             }
             RestoreError::NotARun { missing: "summary.json", .. } => {
                 format!("it is written last: the run was not finished, or the file was removed; {AGAIN}")

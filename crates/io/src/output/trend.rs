@@ -84,6 +84,11 @@ fn left_in_quarter(quarters: u32, t_s: &[f64], overall: &[f64]) -> Option<(f64, 
     Some((largest(&overall[now]) / largest(&overall[before]), false))
 }
 
+/// Whether a gap falls from row to row in the last half, not in steps and without ripples.
+pub(super) fn falls_steadily(t_s: &[f64], overall: &[f64]) -> bool {
+    left_in_quarter(0, t_s, overall).is_some_and(|(_, steadily)| steadily)
+}
+
 /// The mean over a stretch of the time; not a number where it has no row.
 fn mean(stretch: [f64; 2], t_s: &[f64], overall: &[f64]) -> f64 {
     let rows = &overall[rows_before_end(stretch, t_s, overall)];

@@ -10,7 +10,7 @@ use super::run_folder::{self, JOURNAL};
 use super::shipped::{SHIPPED_SCENARIOS, shipped_scenario};
 use super::{Scenario, ScenarioError};
 use crate::SourceText;
-use crate::files::{ReadError, neighbours, read_text};
+use crate::files::{ReadError, neighbours, read_scenario_text};
 use crate::shown;
 use crate::shown::one_line;
 use crate::wording::{choose, for_shell};
@@ -65,6 +65,9 @@ impl Diagnostic for OpenError {
                 Some(Box::new(format!(
                     "it is the folder of a run that was cut off: `forwardstep report {folder}` first writes all its files, the scenario among them"
                 )))
+            }
+            OpenError::File { path, reason: ReadError::Folder } if path.join(run_folder::SCENARIO).is_file() => {
+                Some(Box::new(format!("give the scenario in it, `{}`", shown(&path.join(run_folder::SCENARIO)))))
             }
             OpenError::File { path, reason: ReadError::Folder } => {
                 let known = neighbours(&path.join(run_folder::SCENARIO), "toml");
@@ -131,7 +134,7 @@ impl Kinds {
 /// # Errors
 /// [`OpenError`] when it cannot be read.
 pub fn open_text(path: &Path) -> Result<SourceText, OpenError> {
-    let text = read_text(path).map_err(|reason| OpenError::File { path: path.to_owned(), reason })?;
+    let text = read_scenario_text(path).map_err(|reason| OpenError::File { path: path.to_owned(), reason })?;
     Ok(SourceText::new(path.display().to_string(), text))
 }
 
@@ -154,7 +157,7 @@ fn open(name_or_path: &str, kinds: &Kinds) -> Result<Scenario, OpenError> {
         }
         return run_folder::open(path, kinds);
     }
-    let text = read_text(path).map_err(|reason| {
+    let text = read_scenario_text(path).map_err(|reason| {
         let looks_like_a_name = path.extension().is_none() && path.components().count() <= 1;
         if reason == ReadError::Missing && looks_like_a_name {
             OpenError::Unknown { name: name_or_path.to_owned() }

@@ -67,7 +67,7 @@ pub enum ScenarioProblem {
         most: u64,
     },
     /// Agents that can never agree, because their positions have different lengths.
-    #[error("`{first}` has {} and `{other}` has {other_axes}, but agents that agree need as many", axes(*.first_axes))]
+    #[error("`{first}` has {} and `{other}` has {other_axes}, but all agents of a scenario need as many", axes(*.first_axes))]
     AxesDiffer {
         /// The first agent.
         first: String,
@@ -215,7 +215,7 @@ impl Problem for ScenarioProblem {
                     .into()
             }
             ScenarioProblem::AxesDiffer { .. } => {
-                "agreement is on one vector of axes; `locked` removes joints of a URDF".into()
+                "references, the network and goals are of one vector of axes; `locked` removes joints of a URDF".into()
             }
             ScenarioProblem::RobotFile { reason, .. } if reason.help().is_some() => {
                 reason.help().unwrap_or_default().into()

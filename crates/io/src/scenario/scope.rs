@@ -73,7 +73,7 @@ const WISHES: &[(&[&str], &str)] = &[
             "separation",
         ],
         "robots pass through each other, and there are no obstacles. Nearest: a `target` keeps vehicles and rotorcraft apart by constant \
-         offsets, and joints keep to the position limits of their URDF (`enforce_limits`)",
+         offsets, and `enforce_limits` ends a run where a joint leaves the position limits of its URDF",
     ),
     (
         &["contact", "contacts", "ground", "grasp", "touch", "impact", "terrain", "floor", "slope"],

@@ -222,7 +222,11 @@ fn files_are_looked_for_beside_the_scenario_before_the_shipped_ones() {
     std::fs::write(&path, text.replace("count = 2", "count = 1").replace("[[0.1, 0.2], [0.3, 0.4]]", "[0, 0]"))
         .unwrap();
     let open = || open_scenario(path.to_str().unwrap()).unwrap_err().to_string();
-    assert!(open().ends_with("`arm-1` has 2 axes and `cart` has 7, but agents that agree need as many"), "{}", open());
+    assert!(
+        open().ends_with("`arm-1` has 2 axes and `cart` has 7, but all agents of a scenario need as many"),
+        "{}",
+        open()
+    );
     std::fs::write(folder.path().join("panda.urdf"), "<sdf/>").unwrap();
     assert!(open().contains("panda.urdf:1:"), "{}", open());
     std::fs::write(folder.path().join("panda.urdf"), [0xff, 0xfe]).unwrap();

@@ -31,6 +31,8 @@ pub use spline::{Spline, SplineError};
 const CLOSE: f64 = 1e-6;
 /// Room for the roundings of a few operations.
 const ROUNDING: f64 = 1e-12;
+/// So many times a bound is clearly beyond it.
+const CLEARLY: f64 = 1.001;
 
 /// amplitude · sin(rate · t + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,7 +210,15 @@ impl Path {
                 (point.low == point.high && point.size() == size).then_some(Witness { t_s, value: point.low })
             })
         };
-        times_s.into_iter().find_map(reaches)
+        // The first that says so clearly, or else one that does so by a hair.
+        let mut first = None;
+        for witness in times_s.into_iter().filter_map(reaches) {
+            if witness.value.abs() >= CLEARLY * size {
+                return Some(witness);
+            }
+            first.get_or_insert(witness);
+        }
+        first
     }
 
     /// Whether |Σₖ `weights[k]` · (k-th derivative)| is bounded for ever; `None` where neither is shown.

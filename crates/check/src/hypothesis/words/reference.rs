@@ -23,7 +23,9 @@ pub(super) fn words(evidence: &ReferenceEvidence) -> String {
         ReferenceEvidence::Hurwitz { slowest_per_s } => {
             format!("the real part of every root is −{} per second at most", as_it_is(*slowest_per_s))
         }
-        ReferenceEvidence::Order(order) => format!("the order is {order}"),
+        ReferenceEvidence::Order(order) => {
+            format!("each has {order} {}", if *order == 1 { "root" } else { "roots" })
+        }
         ReferenceEvidence::Orders([(a, order_a), (b, order_b)]) => {
             format!(
                 "{} has order {order_a} and {} has order {order_b}, each in steps of its own, as in (30)",

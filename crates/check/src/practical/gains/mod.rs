@@ -159,9 +159,9 @@ impl ReferenceGains {
         }
         let (over, round_s) = match Repeats::of(setup) {
             // Any time is like any other.
-            Some(Repeats::Always) => (Over::Fixed, step_s),
-            Some(Repeats::Every(period_s)) => (Over::Period(period_s), period_s),
-            None => (Over::Horizon(end_s), end_s),
+            Ok(Repeats::Always) => (Over::Fixed, step_s),
+            Ok(Repeats::Every(period_s)) => (Over::Period(period_s), period_s),
+            Err(_) => (Over::Horizon(end_s), end_s),
         };
         let sums = worked_out(setup, &agents, over, round_s, step_s)?;
         let lambda = setup.agents.iter().any(|agent| agent.manipulability != 0.0);

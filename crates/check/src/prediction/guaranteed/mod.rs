@@ -129,7 +129,7 @@ pub fn guaranteed_rate(setup: &Setup, work: f64) -> Result<GuaranteedRate, NoGua
         Window::EveryGraph | Window::Once { .. } => None,
         Window::Uniform { length_s, .. } => Some(length_s).filter(|length_s| *length_s > 0.0),
     };
-    let repeats = Repeats::of(&network.ideal);
+    let repeats = Repeats::of(&network.ideal).ok();
     let [short, long] = Blocks::of(&network, repeats, work);
     let is_settled = |falls: &[Fall]| falls.last().is_some_and(|last| last.left <= SHARE);
     let mut falls = listed(short.falls());

@@ -63,6 +63,10 @@ impl Family {
             Drawn::WithAll | Drawn::Beside => None,
             Drawn::Card { title, letters, beside } => {
                 let wanted = beside.filter(|wanted| signals.contains(wanted));
+                let letters = match wanted {
+                    Some(_) => format!("{letters}, commanded dashed"),
+                    None => letters,
+                };
                 Some(Family { signal, wanted, title: title.into(), letters })
             }
         };

@@ -83,7 +83,7 @@ pub(crate) fn figures(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
             }
             @if let Some(t_s) = metrics.settled_s { (figure("Settled after", &number(t_s), "s")) }
             @if let Some(speed) = metrics.speed {
-                (figure("Largest recorded speed, one axis", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
+                (figure("Largest speed, one axis", &number(speed.largest.value), &unit_at(setup, Signal::Velocity, speed.largest.agent, speed.largest.axis)))
             }
             @let peaks = metrics.peak_torques.iter();
             @if let Some(peak) = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a }) {

@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::super::conclusion::LEFT_OVER;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
-use super::super::prediction::{CourseFound, NEAR, PredictedCourse, PredictedRate, PredictedTorque, Predictions};
+use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions, is_far};
 use super::super::record::RunRecord;
 use super::super::text::{self, number, prose};
 use super::sections::last_tracking_error;
@@ -132,7 +132,11 @@ fn tracking_error(record: &RunRecord<'_>, metrics: &Metrics) -> Option<String> {
             "At the end s is still {size}{why}. Without s, and in continuous time, {without} would be left."
         ));
     }
-    let moved = if is_moved(course, metrics, last) { "; it also moved the value agreed upon" } else { "" };
+    let moved = match is_moved(course, metrics, last) {
+        true if course.moved_by_s => "; it also moved the value agreed upon",
+        true => "; what they agree upon comes to the predicted value once it has vanished",
+        false => "",
+    };
     Some(format!(
         "At the end s is still {size}{why}. Without s {without} would be left: s, not the network, keeps the agents apart{moved}."
     ))
@@ -174,9 +178,9 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
     let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
     html! {
         div.card.scroll {
-            h3 { "Peak torque" " " span.by {
+            h3 { "Peak " (names::input_words(setup).0) " " span.by {
                 "predicted with the true parameters along the reference; "
-                @if course.peak_torques.iter().all(|peak| peak.estimate_off > NEAR) { "estimates start farther off than 20 %, so the torque can be another" }
+                @if course.peak_torques.iter().all(|peak| is_far(peak.estimate_off)) { "estimates start farther off than 20 %, so the torque can be another" }
                 @else { "an indication where estimates start within 20 % of them" }
             } }
             table.numbers {

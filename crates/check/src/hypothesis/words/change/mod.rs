@@ -162,7 +162,7 @@ fn known(reason: Unknown, bound_s: f64) -> String {
         Unknown::FormulaSign => "max(T, 0) in the place of the formula T".into(),
         Unknown::FormulaBound => format!("an end of the formula T, such as min(T, {})", bound(bound_s)),
         Unknown::FormulaSteep | Unknown::FormulaContinuity => STEADY.into(),
-        Unknown::PacketsInARow => "`most_consecutive` losses in a row".into(),
+        Unknown::PacketsInARow => "`most_consecutive` beside what draws the losses".into(),
         Unknown::NothingArrived => "packets that arrive before the run ends, and a bound of their losses".into(),
         Unknown::LaterHolds => "a rule, such as `delay.random_hold`, in the place of a log".into(),
         Unknown::LaterPackets => "a rule, such as `delay.packets`, in the place of a log".into(),

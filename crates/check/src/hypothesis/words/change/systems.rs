@@ -66,7 +66,10 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
                 .into()
         }
         KindEvidence::AngularRate { agent, .. } => {
-            format!("`robot.vehicle` for {}, whose angular velocity is that which the law asks for", agent.name)
+            format!(
+                "`robot.vehicle` for {} and all others that are rotorcraft, whose angular velocity is that which the law asks for",
+                agent.name
+            )
         }
         KindEvidence::TermFails { term, at, .. } => {
             let what = match term {
