@@ -39,6 +39,9 @@ pub(crate) fn with_tips(mut error: clap::Error) -> clap::Error {
 /// The tip for an option that does not exist.
 fn tip_for_unknown(word: &str) -> Option<String> {
     match word.strip_prefix("--") {
+        Some("slide" | "slides" | "animation" | "film" | "png" | "svg") => {
+            Some("the page of a run or a comparison has buttons for slides, pictures and films".to_owned())
+        }
         Some(name) => nearest_here(name),
         None if word.parse::<f64>().is_ok() => Some("no number here is negative".to_owned()),
         None => is_scenario(word).then(|| {
@@ -74,6 +77,7 @@ mod tests {
         for (word, part) in [
             ("--obstacles", "ends a run where a joint leaves the position limits"),
             ("--floating-base", "`robot.vehicle`"),
+            ("--slide", "buttons for slides"),
             ("-1", "negative"),
             ("own.toml", "compare A B"),
         ] {

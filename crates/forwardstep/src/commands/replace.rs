@@ -113,15 +113,20 @@ fn not_into(folder: &Path, error: &io::Error) -> Plain<String> {
     Plain::with_help(format!("cannot write into `{}`: {error}", shown(folder)), help)
 }
 
-fn refused(path: &Path, error: &io::Error) -> Plain<String> {
-    let help = match error.kind() {
+/// What to do where a file cannot be written.
+pub(crate) fn help_for(kind: ErrorKind) -> Option<&'static str> {
+    match kind {
         ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => {
             Some("name a file in a folder that you may write to")
         }
-        ErrorKind::StorageFull => Some("make room, or name a file on another disk"),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => Some("make room, or name a file on another disk"),
+        ErrorKind::FileTooLarge => Some("raise the limit on the size of files (`ulimit -f`)"),
         _ => None,
-    };
-    Plain::with_help(format!("cannot write `{}`: {error}", shown(path)), help)
+    }
+}
+
+fn refused(path: &Path, error: &io::Error) -> Plain<String> {
+    Plain::with_help(format!("cannot write `{}`: {error}", shown(path)), help_for(error.kind()))
 }
 
 /// Another name beside it, which no other program that runs now has.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use comfy_table::{ContentArrangement, Table, presets};
 use forwardstep::check::Injection;
-use forwardstep::io::output::names::{agent_name, clipped_words, gap_unit, input_words, torque_words, unit};
+use forwardstep::io::output::names::{agent_name, clipped_words, gap_unit, input_words, torque_words, unit, units};
 use forwardstep::io::output::{
     Conclusion, Disagreement, FirstInjection, Gap, Injected, LimitReached, Load, Metrics, RunRecord, WatchedMargin,
     coarse_rows,
@@ -60,7 +60,8 @@ pub(crate) fn summary(
         rows.push(("settled to 1 %", format!("{observed}{}", predicted.unwrap_or_default())));
     }
     if let Some(s) = metrics.final_tracking_error {
-        rows.push(("final tracking error", format!("|s| ≤ {}", short(s))));
+        let size = with_unit(s, &units(setup, Signal::TrackingError));
+        rows.push(("final tracking error", format!("|s| ≤ {size}")));
     }
     if let Some(agreement) = &metrics.agreement {
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
@@ -241,7 +242,7 @@ fn names(folder: &Path, files: &[PathBuf]) -> String {
 
 /// With its unit, but for a pure number.
 fn with_unit(value: f64, unit: &str) -> String {
-    if unit == "1" { short(value) } else { format!("{} {unit}", short(value)) }
+    if unit.is_empty() || unit == "1" { short(value) } else { format!("{} {unit}", short(value)) }
 }
 
 #[cfg(test)]

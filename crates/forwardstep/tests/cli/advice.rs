@@ -209,7 +209,7 @@ disagreement_below = 1e-3
     fs::write(folder.path().join("two.toml"), text).unwrap();
     let said = stdout(&forwardstep(&folder, &["run", "two.toml"]).code(1));
     assert!(
-        said.contains("not agreed: axis 1, 1 m apart") && said.contains("it needs some 20 s more at least; larger"),
+        said.contains("not agreed: axis 1, 1 m apart") && said.contains("it needs some 19 s more at least; larger"),
         "{said}"
     );
     assert!(!said.contains("do not follow their references"), "{said}");

@@ -184,7 +184,9 @@ impl OutputError {
                 io::ErrorKind::FileTooLarge => {
                     Some("raise the limit on the size of files (`ulimit -f`), or record fewer rows")
                 }
-                io::ErrorKind::ReadOnlyFilesystem => Some("choose a folder on a disk that can be written to"),
+                io::ErrorKind::ReadOnlyFilesystem => {
+                    Some("choose a folder on a disk that can be written to, such as with --out")
+                }
                 // The folder could be written to before.
                 _ if AMID.contains(action) => {
                     Some("look whether the disk is sound and still there, or choose a folder on another one")

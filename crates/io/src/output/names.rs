@@ -267,6 +267,14 @@ pub fn gap_unit(setup: &Setup) -> String {
     }
 }
 
+/// The units that a signal has over all agents and axes, in words; nothing where any has none.
+pub fn units(setup: &Setup, signal: Signal) -> String {
+    let axes = |agent: usize| 0..setup.agents.get(agent).map_or(0, |agent| agent.robot.axes.len());
+    let all = (0..setup.agents.len()).flat_map(|agent| axes(agent).map(move |axis| (agent, axis)));
+    let units: BTreeSet<String> = all.map(|(agent, axis)| unit(setup, agent, signal, axis)).collect();
+    if units.contains("") { String::new() } else { Vec::from_iter(units).join(" or ") }
+}
+
 /// The same of one axis of an agent, where others may have another unit.
 pub fn gap_unit_on(setup: &Setup, agent: usize, axis: usize) -> String {
     let unit = unit(setup, agent, gap_signal(setup), axis);

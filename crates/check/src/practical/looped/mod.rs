@@ -76,13 +76,13 @@ pub struct WholeLoop {
     /// At the start.
     pub start: LoopAt,
     /// Where references lead those that come to rest, or later; nothing where that is not known.
-    pub last: Option<LoopAt>,
+    pub last: Option<Box<LoopAt>>,
     /// Along the motion of those that are led by a target or a leader.
     pub along: Option<LoopAlong>,
-    /// The same where the agents go with the estimates that they begin with; nothing where none move, or nothing grows with those that are right.
-    pub as_begun: Option<LoopAlong>,
+    /// Whether what grows along it with estimates that are right does not where the agents go with those that they begin with.
+    pub decays_as_begun: bool,
     /// At the last state that is known, with estimates that are wrong; nothing where none move.
-    pub astray: Option<LoopAt>,
+    pub astray: Option<Box<LoopAt>>,
     /// What a trial of all agents tells.
     pub trial: Trial,
     /// Whether what is heard by those that were looked at is not always weighed as much, as it is taken where no network is.
@@ -135,6 +135,7 @@ impl WholeLoop {
         let grows = along.as_ref().is_some_and(|along| along.grows_per_s().is_some());
         let follows = led.iter().all(|agent| setup.tracks(*agent));
         let as_begun = if grows && follows && moves(setup) { LoopAlong::of(&smooth, &[], &led) } else { None };
+        let decays_as_begun = as_begun.is_some_and(|along| along.grows_per_s().is_none());
         let rests = if along.is_some() { &free } else { &looked };
         let last = if rests.is_empty() { None } else { at_last(&known).and_then(|place| place.look(rests)) };
         let astray = astray(&smooth).and_then(|wrong| at_last(&wrong).or_else(|| Place::new(wrong, 0.0, 0)));
@@ -145,10 +146,10 @@ impl WholeLoop {
         Some(WholeLoop {
             period_s,
             start: start?,
-            last,
+            last: last.map(Box::new),
             along,
-            as_begun,
-            astray,
+            decays_as_begun,
+            astray: astray.map(Box::new),
             trial,
             changes,
             agents: looked.len(),
@@ -198,7 +199,7 @@ impl WholeLoop {
         match (self.seen_per_s(), self.lasting_per_s()) {
             (Some(rate), _) => match self.changes || self.is_contradicted(rate) {
                 true => PracticalAnswer::NotShown,
-                false if self.decays_as_begun() => PracticalAnswer::Marginal,
+                false if self.grows_by_right_estimates() => PracticalAnswer::Marginal,
                 false => PracticalAnswer::Inadequate,
             },
             _ if self.amplified().is_some() => PracticalAnswer::NotShown,
@@ -224,9 +225,9 @@ impl WholeLoop {
     }
 
     /// Whether what grows does so along a motion, with estimates that are right, and not with those that the agents begin with.
-    pub(super) fn decays_as_begun(&self) -> bool {
-        let rests = self.last.as_ref().is_none_or(|last| self.growth(last).is_none());
-        rests && self.as_begun.as_ref().is_some_and(|along| along.grows_per_s().is_none())
+    pub(super) fn grows_by_right_estimates(&self) -> bool {
+        let rests = self.last.as_deref().is_none_or(|last| self.growth(last).is_none());
+        rests && self.decays_as_begun
     }
 
     /// How fast the worst mode grows by sampling in the long run, 1/s, if it does.
@@ -234,7 +235,7 @@ impl WholeLoop {
         let along = self.along.as_ref().and_then(LoopAlong::grows_per_s);
         let last = match (&self.last, &self.along) {
             (None, Some(_)) => None,
-            (last, _) => self.growth(last.as_ref().unwrap_or(&self.start)),
+            (last, _) => self.growth(last.as_deref().unwrap_or(&self.start)),
         };
         along.into_iter().chain(last).reduce(f64::max)
     }
@@ -263,7 +264,7 @@ impl WholeLoop {
 
     /// The last state that was looked at.
     pub fn last(&self) -> &LoopAt {
-        self.last.as_ref().unwrap_or(&self.start)
+        self.last.as_deref().unwrap_or(&self.start)
     }
 
     /// How much of what is heard is passed on at the last state, where that is more than all of it and more than in the ideal loop.

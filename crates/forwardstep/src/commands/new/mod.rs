@@ -81,7 +81,7 @@ impl NewError {
         match self {
             NewError::Exists(_) => Some("give another name; nothing is ever overwritten"),
             NewError::Write { reason: ErrorKind::NotFound, .. } => Some("make its folder first"),
-            NewError::Write { .. } => None,
+            NewError::Write { reason, .. } => replace::help_for(*reason),
             NewError::NoJoints(_) => Some("leave `--dry-friction` out, or take an arm"),
             NewError::NotText(_) => Some("copy the robot beside the scenario"),
             NewError::NotUtf8(_) => Some("give it another name"),
@@ -193,7 +193,7 @@ fn template(options: &NewOptions, kinds: &Kinds) -> Result<Template, Status> {
     let asker = Asker::new();
     let stem = || options.file.as_ref()?.file_stem()?.to_str().map(str::to_owned);
     let offered: Vec<&str> = kinds.robot_keys().into_iter().filter(|key| kinds.template(key).is_some()).collect();
-    let question = format!("robot: {}, ur5e, panda or the path of a URDF", offered.join(", "));
+    let question = format!("robot: {}, ur5e, panda, gantry or the path of a URDF", offered.join(", "));
     let first = offered.first().copied().unwrap_or_default().to_owned();
     let given = asker.ask(options.robot.clone(), &question, first, |answer| Ok::<_, &str>(answer.to_owned()));
     let mut chosen = robot(&given, options.file.as_deref(), kinds)?;
