@@ -245,12 +245,6 @@ fn whole(found: &WholeLoop) -> String {
             let right = if found.adapts { " with estimates that are right" } else { "" };
             format!("a mode grows at {}/s{right}; {advice}", rounded(rate))
         }
-        (Some(rate), _, _) if found.grows_by_right_estimates() && found.answer() == PracticalAnswer::Marginal => {
-            format!(
-                "once estimates are right a mode grows at {}/s, and none does as they start; {advice}",
-                rounded(rate)
-            )
-        }
         (Some(rate), _, _) if found.is_contradicted(rate) => format!(
             "a mode grows at {}/s in some of these states, though a trial of {} s does not run away; {advice}",
             rounded(rate),

@@ -339,7 +339,9 @@ fn regress_targets_are_looked_at_along_their_way_whatever_the_number_of_roots_is
         // Linear maps alone, without a trial.
         let [slow, fast] = [20.0, 2000.0].map(|hz| WholeLoop::of(&setup.clone().sampled(hz)).expect("it has numbers"));
         assert_eq!((&slow.last, slow.start_per_s()), (&None, None), "{roots:?}: {slow:?}");
-        assert!(slow.along.is_some(), "{roots:?}: {slow:?}");
+        // There is too much of it at 2 kHz to be followed from end to end.
+        let is_gapless = fast.along.as_ref().map(|along| along.is_gapless);
+        assert!(slow.along.is_some() && is_gapless == Some(false), "{roots:?}: {slow:?} {fast:?}");
         assert_eq!(slow.answer(), PracticalAnswer::Inadequate, "{roots:?}: {slow:?}");
         assert!(fast.answer() < PracticalAnswer::Inadequate, "{roots:?}: {fast:?}");
     }
@@ -387,7 +389,8 @@ fn regress_a_loop_along_a_motion_grows_where_its_run_does() {
     };
     for (hz, grows) in [(20.0, true), (23.0, true), (26.0, true), (30.0, true), (40.0, false), (50.0, false)] {
         let setup = arm(hz, 90.0);
-        let found = WholeLoop::of(&setup).expect("it has numbers");
+        // A trial of it does not run away, as far as it bursts.
+        let found = found(&setup);
         let along = found.along.as_ref().expect("it is led");
         assert!(along.is_gapless, "{along:?}");
         assert_eq!(found.answer() == PracticalAnswer::Inadequate, grows, "{hz} Hz: {found:?}");

@@ -236,3 +236,40 @@ fn one_file_too_many_or_too_few_and_numbers_that_are_none_have_a_next_step() {
     let both = said(&["report", "both"]);
     assert!(both.contains("it is a comparison: give one of the runs"), "{both}");
 }
+
+/// Links that take turns: a time "would be enough" after which nine times as much was left.
+#[test]
+fn regress_of_a_gap_that_falls_unevenly_no_time_is_said_to_be_enough() {
+    let folder = folder();
+    let text = r#"
+format = 2
+time = { end_s = 5, record_every_s = 0.02 }
+[[agents]]
+name = "m0"
+robot.point_mass = { dimension = 1, mass_kg = 1.2 }
+start = { position_m = [0], velocity_m_s = [0.5] }
+[[agents]]
+name = "m1"
+robot.point_mass = { dimension = 1, mass_kg = 0.7 }
+start = { position_m = [-0.9], velocity_m_s = [-0.4] }
+[reference.consensus]
+roots_per_s = [3.3, 1.5, 1.9]
+exchange = "position"
+[law.adaptive]
+damping.gain = 9.5
+[[network.phases]]
+dwell_s = 2.03
+edges = [{ from = "m0", to = "m1", weight = 0.92 }]
+[[network.phases]]
+dwell_s = 0.32
+edges = []
+[[network.phases]]
+dwell_s = 1.71
+edges = [{ from = "m1", to = "m0", weight = 0.94, delay.constant_s = 0.1 }]
+[goal]
+disagreement_below = 1e-4
+"#;
+    fs::write(folder.path().join("turns.toml"), text).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "turns.toml"]).code(1));
+    assert!(said.contains("comes closer unevenly, so `time.end_s = ") && said.contains(" at least"), "{said}");
+}

@@ -433,6 +433,12 @@ pub(super) fn is_far(off: f64) -> bool {
 mod tests {
     use super::*;
 
+    /// Four fifths of the truth were "farther off than 20 %".
+    #[test]
+    fn regress_a_fifth_is_not_farther_off_than_a_fifth() {
+        assert_eq!([1.0 - 0.8, 0.8 - 1.0 + 0.4, 0.21].map(is_far), [false, false, true]);
+    }
+
     #[test]
     fn torques_have_three_places_where_these_say_something() {
         let said = [0.0, 12.34567, 0.01, 359_608_699_164.0, 0.0042].map(three_places);

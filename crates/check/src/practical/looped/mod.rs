@@ -79,8 +79,6 @@ pub struct WholeLoop {
     pub last: Option<Box<LoopAt>>,
     /// Along the motion of those that are led by a target or a leader.
     pub along: Option<LoopAlong>,
-    /// Whether what grows along it with estimates that are right does not where the agents go with those that they begin with.
-    pub decays_as_begun: bool,
     /// At the last state that is known, with estimates that are wrong; nothing where none move.
     pub astray: Option<Box<LoopAt>>,
     /// What a trial of all agents tells.
@@ -132,10 +130,6 @@ impl WholeLoop {
         let is_led = |agent: &usize| setup.following().is_some() || setup.tracks(*agent);
         let (led, free): (Vec<usize>, Vec<usize>) = looked.iter().partition(|agent| is_led(agent));
         let along = LoopAlong::of(&known, way, &led);
-        let grows = along.as_ref().is_some_and(|along| along.grows_per_s().is_some());
-        let follows = led.iter().all(|agent| setup.tracks(*agent));
-        let as_begun = if grows && follows && moves(setup) { LoopAlong::of(&smooth, &[], &led) } else { None };
-        let decays_as_begun = as_begun.is_some_and(|along| along.grows_per_s().is_none());
         let rests = if along.is_some() { &free } else { &looked };
         let last = if rests.is_empty() { None } else { at_last(&known).and_then(|place| place.look(rests)) };
         let astray = astray(&smooth).and_then(|wrong| at_last(&wrong).or_else(|| Place::new(wrong, 0.0, 0)));
@@ -148,7 +142,6 @@ impl WholeLoop {
             start: start?,
             last: last.map(Box::new),
             along,
-            decays_as_begun,
             astray: astray.map(Box::new),
             trial,
             changes,
@@ -188,7 +181,7 @@ impl WholeLoop {
         Some(low)
     }
 
-    /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong or only with right estimates, or
+    /// Inadequate where a mode grows in the long run or a trial runs away, marginal where it does so at the start, with wrong estimates, or
     /// too slowly to be seen, or where one overshoots or is slowed; not shown where one may grow in some network, would if the largest
     /// weights stayed, or would have been seen to in the trial.
     pub fn answer(&self) -> PracticalAnswer {
@@ -199,7 +192,6 @@ impl WholeLoop {
         match (self.seen_per_s(), self.lasting_per_s()) {
             (Some(rate), _) => match self.changes || self.is_contradicted(rate) {
                 true => PracticalAnswer::NotShown,
-                false if self.grows_by_right_estimates() => PracticalAnswer::Marginal,
                 false => PracticalAnswer::Inadequate,
             },
             _ if self.amplified().is_some() => PracticalAnswer::NotShown,
@@ -222,12 +214,6 @@ impl WholeLoop {
         let is_known =
             self.along.as_ref().is_some_and(|along| along.is_gapless && along.grows_per_s() >= Some(rate_per_s));
         rate_per_s * self.trial.lasted_s > SEEN && (self.adapts || !is_known)
-    }
-
-    /// Whether what grows does so along a motion, with estimates that are right, and not with those that the agents begin with.
-    pub(super) fn grows_by_right_estimates(&self) -> bool {
-        let rests = self.last.as_deref().is_none_or(|last| self.growth(last).is_none());
-        rests && self.decays_as_begun
     }
 
     /// How fast the worst mode grows by sampling in the long run, 1/s, if it does.

@@ -163,3 +163,45 @@ fn product(maps: impl Iterator<Item = Linear>) -> Option<Growth> {
     let per_s = (late - early) / between_s;
     per_s.is_finite().then_some(Growth { per_s, over_s: part_s * sizes.len() as f64, is_gapless: true })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(own: [f64; 4]) -> Linear {
+        let none = || DMatrix::zeros(0, 0);
+        Linear { period_s: 0.5, own: DMatrix::from_row_slice(2, 2, &own), tells: none(), hears: [none(), none()] }
+    }
+
+    /// What stretches by e^a along an axis that turns on from part to part grows at a, and by what every part does alone, or in another order, at
+    /// another rate.
+    #[test]
+    fn deviations_are_followed_from_part_to_part() {
+        let turned = |k: usize| {
+            let ((s, c), (s_after, c_after)) = (libm::sincos(k as f64), libm::sincos(k as f64 + 1.0));
+            let (long, short) = (libm::exp(0.2), libm::exp(-0.4));
+            map([
+                c_after * long * c + s_after * short * s,
+                c_after * long * s - s_after * short * c,
+                s_after * long * c - c_after * short * s,
+                s_after * long * s + c_after * short * c,
+            ])
+        };
+        let found = product((0..40).map(turned)).unwrap();
+        assert!((found.per_s - 0.4).abs() < 1e-9 && found.over_s == 20.0, "{}", found.per_s);
+    }
+
+    /// What falls at the beginning is no rate of what comes later.
+    #[test]
+    fn the_beginning_of_a_way_does_not_count() {
+        let own = |k: usize| libm::exp(if k < 10 { -3.0 } else { 0.05 });
+        let found = product((0..40).map(|k| map([own(k), 0.0, 0.0, own(k)]))).unwrap();
+        assert!((found.per_s - 0.1).abs() < 1e-9, "{}", found.per_s);
+        let along = |per_s: f64| {
+            let rate = LoopRate { per_s, ideal_per_s: None };
+            LoopAlong { agent: Named { index: 0, name: String::new() }, rate, over_s: 20.0, is_gapless: true }
+        };
+        assert_eq!([0.049, 0.051].map(|per_s| along(per_s).grows_per_s()), [None, Some(0.051)]);
+        assert!(product((0..3).map(|_| map([1.0; 4]))).is_none(), "too few");
+    }
+}
