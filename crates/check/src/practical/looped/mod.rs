@@ -24,9 +24,8 @@
 //! grows.
 //!
 //! All of it is local. It is looked at where a run starts, and where its references lead, with s ≡ 0: what lasts is there. Consensus comes
-//! to rest, and its last state counts, of agents under other laws after some periods by themselves; along the motion of a target or a leader deviations are
-//! followed for as long as little work leads (`way`). A
-//! trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its largest weights;
+//! to rest, and its last state counts, of agents under other laws after some periods by themselves; along the motion of a target or a
+//! leader deviations are followed as far as little work leads (`way`). A trial of all together (`trial`) sees what no linear map does. In a network that changes every agent is taken with its largest weights;
 //! what grows then is not shown to, nor is what would have been seen in the time of a trial. A loop that is bad at
 //! the start alone is left before it has grown. Estimates are right, of laws that say what they estimate, and where they move, the last
 //! state is looked at again with those that may be reached: at their upper bounds, or without bounds as they start. A loop that grows
@@ -65,7 +64,7 @@ const TOLERANCE: f64 = 1e-4;
 const SEEN: f64 = 60.0;
 /// A friction that is none, in N m or N: it has to be positive.
 const NO_FRICTION: f64 = 1e-12;
-/// When agents under other laws than (6)–(7) are looked at that nobody leads, in periods.
+/// When agents under other laws than (6)–(7) are looked at that are not led, in periods.
 const LATER: u32 = 512;
 
 /// The loops of agents as a whole, at the start and on their way.

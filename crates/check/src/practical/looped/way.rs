@@ -5,8 +5,8 @@
 //! time than in the second one, per time: how a motion turns and stretches P while it comes back is in both. The parts begin where
 //! the agent is with s ≡ 0, or under other laws than (6)–(7) where the part before ended.
 //!
-//! Where all of that takes too much work, or deviations leave all bounds within a part, r is the mean of ln ρ(J) per time of single periods that are spread over it, an
-//! estimate that is good while the motion is slow beside its modes.
+//! Where all of that takes too much work, or deviations leave all bounds within a part, r is the mean of ln ρ(J) per time of single periods
+//! that are spread over it, an estimate that is good while the motion is slow beside its modes.
 
 use forwardstep_sim::{Periods, Setup};
 use nalgebra::DMatrix;
@@ -20,7 +20,8 @@ use crate::practical::led::Led;
 /// Parts of the way at least, and single periods that are spread over it at most.
 const LEAST: usize = 16;
 const MOST: usize = 64;
-/// Periods of a part, where parts are not longer because there would be too many: what it begins with is left behind by what samples leave of s.
+/// Periods of a part, where parts are not longer because there would be too many: the longer it is, the farther does what samples leave of s
+/// carry it from the way.
 const PERIODS: usize = 16;
 /// A period takes as long as these numbers of state and its own do.
 const SMALL: usize = 16;

@@ -67,7 +67,7 @@ pub(super) fn kind(evidence: &KindEvidence) -> Option<String> {
         }
         KindEvidence::AngularRate { agent, .. } => {
             format!(
-                "`robot.vehicle` for {} and all others that are rotorcraft, whose angular velocity is that which the law asks for",
+                "`robot.vehicle` for {} and every other rotorcraft, whose angular velocity is that which the law asks for",
                 agent.name
             )
         }
