@@ -32,7 +32,7 @@
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::graph::Edge;
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral};
-use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup, ThrustLaw, VehicleModel};
+use forwardstep_sim::{AgentSetup, ChainLaw, ChainModel, Setup, ThrustLaw, VehicleModel, check_shape};
 use thiserror::Error;
 
 use crate::conserved::Conserved;
@@ -190,6 +190,7 @@ fn uncertain(error_bound: f64) -> String {
 /// # Errors
 /// [`NoPrediction`] says why there is none.
 pub fn predict(setup: &Setup) -> Result<Prediction, NoPrediction> {
+    check_shape(setup).map_err(|error| NoIdeal::from(Box::new(error)))?;
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
     if setup.reference.is::<Backstepping>() {

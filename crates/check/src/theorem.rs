@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use forwardstep_sim::Exchange;
+use forwardstep_sim::{Exchange, SetupError};
 
 use crate::instance::{self, Design};
 use crate::source::Source;
@@ -98,6 +98,8 @@ pub enum Theorem {
     Desired,
     /// What the author of a law, or of reference dynamics, from outside states, with its source.
     Declared(String),
+    /// None, since the parts of the setup do not fit together.
+    Refused(Box<SetupError>),
     /// Another statement, by an argument of ours that goes beyond it. It keeps the name of the other.
     Extended {
         /// The other.
@@ -171,6 +173,7 @@ impl Theorem {
             Theorem::LeaderObserver => "leader-observer",
             Theorem::Desired => "desired-dynamics",
             Theorem::Declared(_) => "declared",
+            Theorem::Refused(_) => "refused",
             Theorem::Extended { theorem, .. } => theorem.name(),
         }
     }
@@ -223,6 +226,7 @@ impl Theorem {
             | Theorem::LeaderObserver
             | Theorem::CompositeLeader
             | Theorem::Swarm
+            | Theorem::Refused(_)
             | Theorem::Extended { .. } => Source::Derived,
             Theorem::Declared(_) => Source::Declared,
         }
@@ -233,6 +237,7 @@ impl fmt::Display for Theorem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Theorem::Declared(source) => return write!(f, "as declared by its author: {source}"),
+            Theorem::Refused(error) => return write!(f, "no theorem: the parts of the setup do not fit together: {error}"),
             Theorem::Extended { theorem, by } => {
                 let by: Vec<&str> = by.iter().map(|extension| extension.words()).collect();
                 return write!(f, "{theorem}, with {} as derived for this software", by.join(" and "));

@@ -455,6 +455,7 @@ fn of_several_agents_the_worst_linearised_period_is_shown() {
             let mut setup = tracking(agents[0].clone(), vec![rest_at(0.2)]).sampled(1.0 / period_s);
             let target = setup.agents[0].target.clone();
             setup.agents = agents.iter().map(|own| AgentSetup { target: target.clone(), ..own.clone() }).collect();
+            setup.network.agents = agents.len();
             let whole = WholeLoop::of(&setup).unwrap();
             let last = whole.last();
             (last.alone.per_s, whole.start.leftmost.unwrap()[0], whole.answer())
@@ -477,9 +478,13 @@ fn a_period_is_linearised_of_few_of_many() {
     assert_eq!(sampled_loop(&sampled, 1, 0.0, Periods::FIRST).unwrap(), None, "there is no such agent");
     let mut many = sampled.clone();
     let said = |many: &Setup| practical(many).findings[0].because();
-    many.agents = (0..10).map(|_| sampled.agents[0].clone()).collect();
+    let of = |many: &mut Setup, count: usize| {
+        many.agents = vec![sampled.agents[0].clone(); count];
+        many.network.agents = count;
+    };
+    of(&mut many, 10);
     assert!(said(&many).contains("(agent, the worst of all 10 agents)"), "{}", said(&many));
-    many.agents = (0..40).map(|_| sampled.agents[0].clone()).collect();
+    of(&mut many, 40);
     assert!(said(&many).contains("the worst of 14 of 40 agents"), "{}", said(&many));
     let alone = said(&sampled);
     assert!(alone.contains("(agent), with a period of 50 ms: the slowest mode decays at 0.3763/s"), "{alone}");

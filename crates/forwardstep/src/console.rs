@@ -17,6 +17,7 @@ use textwrap::{Options, WordSeparator, WordSplitter};
 
 pub(crate) use crate::mistake::Plain;
 use crate::mistake::Told;
+use crate::number;
 use crate::status::Status;
 
 /// Green, for what holds.
@@ -162,7 +163,8 @@ fn explained(mistake: &dyn Diagnostic, width: Option<usize>, colour: bool) -> St
 
 /// The same text in lines of this width, if there is one.
 fn wrapped(text: &str, width: Option<usize>) -> String {
-    width.map_or_else(|| text.to_owned(), |width| textwrap::fill(text, between_words(width)))
+    let filled = |width| textwrap::fill(&number::with_units(text), between_words(width)).replace(number::TIE, " ");
+    width.map_or_else(|| text.to_owned(), filled)
 }
 
 /// Lines of this width, broken between words only.
@@ -197,7 +199,8 @@ fn continued(line: &str, width: usize) -> String {
         _ => return line.to_owned(),
     };
     let (first, rest) = (" ".repeat(indent), " ".repeat(hang));
-    textwrap::fill(content, between_words(width).initial_indent(&first).subsequent_indent(&rest))
+    let options = between_words(width).initial_indent(&first).subsequent_indent(&rest);
+    textwrap::fill(&number::with_units(content), options).replace(number::TIE, " ")
 }
 
 /// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output, which fails where that

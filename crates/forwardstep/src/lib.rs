@@ -34,6 +34,8 @@ mod console;
 mod falsify;
 #[cfg(feature = "program")]
 mod mistake;
+#[cfg(feature = "program")]
+mod number;
 #[cfg(feature = "files")]
 pub mod own;
 #[cfg(feature = "program")]

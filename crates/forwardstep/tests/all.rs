@@ -23,6 +23,7 @@ mod own_delay;
 mod own_kind;
 mod own_reference;
 mod pushes;
+mod refused;
 mod report;
 mod robot;
 mod rows;

@@ -2,9 +2,10 @@
 
 use std::fs;
 
-use forwardstep::check::{SamplingMargin, along};
+use forwardstep::check::{Finding, SamplingMargin, along, practical};
+use forwardstep::io::SourceText;
 use forwardstep::io::output::Deployment;
-use forwardstep::io::scenario::open_scenario;
+use forwardstep::io::scenario::{open_scenario, read_scenario};
 use forwardstep::sim::run;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -407,4 +408,87 @@ fn regress_what_a_trial_contradicts_is_not_said_of_longer_runs() {
         assert!(said.contains("though a trial of 20.48 s does not run away"), "{said}");
     }
     forwardstep(&folder, &["run", "loop.toml"]).success();
+}
+
+/// The mean of Σ sᵀKs that is bounded before a run, and along it, and that of the run.
+fn powers(scenario: &str) -> [f64; 3] {
+    let setup = read_scenario("a loop", &SourceText::new("loop.toml", scenario), None).unwrap().setup;
+    let before = practical(&setup).findings.into_iter().find_map(|finding| match finding {
+        Finding::TrackingPower(bound) => Some(bound.mean_w),
+        _ => None,
+    });
+    let found = along(&setup, &run(&setup).unwrap().recording).power.unwrap();
+    [before.unwrap(), found.bound.unwrap().mean_w, found.mean_w]
+}
+
+/// The start was in no state of the way where a run is long or agents are many: of two masses over 2000 s the bound was 10⁻⁷ times what the run had.
+#[test]
+fn regress_bounds_of_power_know_of_starts_that_are_short_beside_the_run() {
+    let masses = |count: usize, end_s: u32, weight: u32| {
+        head(end_s, 50.0)
+            + &format!(
+                "[[agents]]\nname = \"m\"\ncount = {count}\nrobot.point_mass = {{ dimension = 1, mass_kg = 1 }}\n\
+                 start.position = {{ random = {{ seed = 2, within = [-0.5, 0.5] }} }}\n[reference.consensus]\nroots_per_s = [1, 2]\n\
+                 exchange = \"position_velocity\"\n[law.known]\ndamping.gain = 5\n[network]\nweight = {weight}\nedges.ring.direction = \"both\"\n"
+            )
+    };
+    for (count, end_s, weight) in [(2, 600, 5), (16, 100, 110), (40, 100, 110)] {
+        let [before, along, seen] = powers(&masses(count, end_s, weight));
+        assert!(seen <= before && seen <= along, "{count} over {end_s} s: {seen:e} of {before:e} and {along:e}");
+    }
+}
+
+/// Until the first torque comes an arm falls; and a filter that begins with zero was unknown to the bound along a run.
+#[test]
+fn regress_bounds_of_power_know_of_late_first_torques_and_of_filters_that_begin_with_zero() {
+    let falling = "format = 2\ntime.end_s = 10\n[[agents]]\nname = \"a\"\ncount = 2\n\
+                   robot.planar_arm = { mass_kg = [1.0, 0.8], length_m = [1.0, 0.8] }\nstart.position_rad = [[0.6, 0.3], [0.6, 0.3]]\n\
+                   [reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position_velocity\"\n[law.known]\ndamping.gain = 0.8\n\
+                   [network]\nedges.ring = {}\n[control]\nsample_hz = 100\ncomputation_delay_s = 0.01\nnoise = { seed = 1, velocity = 1e-4 }\n";
+    let filtered = "format = 2\ntime = { end_s = 20, record_every_s = 0.01 }\n[[agents]]\nname = \"a\"\ncount = 2\n\
+                    robot.point_mass = { dimension = 1, mass_kg = 2 }\nstart = { position = [[1], [0]], velocity = [2.0] }\n\
+                    [reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n[law.known]\ndamping.gain = 20\n\
+                    [network]\nedges.ring = {}\n[control]\nsample_hz = 50\nvelocity.filtered_difference = { cut_off_hz = 5 }\n";
+    for scenario in [falling, filtered] {
+        let [before, along, seen] = powers(scenario);
+        assert!(seen <= before && seen <= along, "{seen:e} of {before:e} and {along:e}\n{scenario}");
+    }
+}
+
+/// They were said to have agreed, without a word of where they went.
+#[test]
+fn regress_agents_that_run_away_together_are_said_to_move() {
+    let folder = folder();
+    let away = "format = 2\ntime.end_s = 200\n[[agents]]\nname = \"m\"\ncount = 3\nrobot.point_mass = { dimension = 1, mass_kg = 2 }\n\
+                start = { position = [[0], [1], [3]], velocity = [0.5] }\n[reference.desired]\npolynomial = [0, 2, 3]\n\
+                coupling_polynomial = [2, 3, 1]\nheard = [2.2]\n[law.known]\n[network]\ndelay.constant_s = 0.2\nedges.ring = {}\n";
+    fs::write(folder.path().join("away.toml"), away).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "away.toml"]).success());
+    assert!(said.contains("at most, all together still moving at "), "{said}");
+    let said = stdout(&forwardstep(&folder, &["run", "five-ships"]).success());
+    assert!(said.contains("agreed: ") && !said.contains("all together"), "{said}");
+}
+
+/// What holds the robots alone was said to hold them under a load as well.
+#[test]
+fn regress_a_standing_push_is_not_held_for_certain() {
+    let folder = folder();
+    let arm = |push: &str| {
+        format!(
+            "format = 2\ntime.end_s = 3\n[[agents]]\nname = \"a\"\ncount = 2\n\
+             robot.planar_arm = {{ mass_kg = [1.0, 0.8], length_m = [1.0, 0.8] }}\nstart.position_rad = [[0.6, 0.3], [0.5, 0.3]]\n\
+             [reference.consensus]\nroots_per_s = [1, 2]\nexchange = \"position\"\n[law.known]\n[network]\nedges.ring = {{}}\n\
+             [control]\nsample_hz = 500\ntorque_limit = [30, 9]\n{push}"
+        )
+    };
+    for (push, answer) in [
+        ("", "adequate"),
+        ("[[external_wrenches]]\non = [\"a-1\"]\nby.wrench = { force_n = [0, -10] }\n", "not shown"),
+        ("[[external_wrenches]]\non = [\"a-1\"]\nfor_s = 1\nby.wrench = { force_n = [0, -10] }\n", "adequate"),
+    ] {
+        fs::write(folder.path().join("arm.toml"), arm(push)).unwrap();
+        let said = stdout(&forwardstep(&folder, &["check", "arm.toml"]));
+        assert!(said.contains(&format!("{answer}: torques and thrusts within their limits")), "{push}: {said}");
+        assert_eq!(said.contains("a push that does not end asks for is not counted"), answer == "not shown", "{said}");
+    }
 }

@@ -52,6 +52,7 @@ fn own_a_tip_by_its_velocity_asks_for_what_theorem_6_does_and_is_not_of_the_pape
     // Beside an arm under Theorem 6 the promise names both.
     let mut both = by_velocity();
     both.agents.extend(shipped("theorem-6").agents);
+    both.network.agents = both.agents.len();
     let both = check(&both);
     assert_eq!(both.theorem, measured.theorem);
     assert!(both.promises.ends_with("as of Theorem 6"), "{}", both.promises);
@@ -83,6 +84,7 @@ fn timed_out() -> Setup {
 fn arm_and_spacecraft() -> Setup {
     let mut setup = shipped("theorem-6");
     setup.agents.extend(shipped("theorem-7").agents);
+    setup.network.agents = setup.agents.len();
     setup
 }
 

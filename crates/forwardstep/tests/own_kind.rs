@@ -15,8 +15,11 @@ use forwardstep::core::plant::VectorField;
 use forwardstep::io::SourceText;
 use forwardstep::io::output::{LimitKind, Metrics};
 use forwardstep::io::scenario::{Scenario, ScenarioError};
+use forwardstep::own::{Fault, LawKind, LawReader, LawTable};
 use forwardstep::{program_with, sim};
 use miette::Diagnostic;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use sim::system::{Declaration, DeclaredClaim, Known};
 use sim::{Assembly, Block, Exchange, Interface, Law, LawWords, ReferenceFamily, RobotSetup, SetupError, Signal};
 
@@ -335,4 +338,68 @@ fn regress_a_signal_of_ones_own_keeps_its_unit_on_axes_of_ones_own() {
     assert_eq!(unit(&setup, Signal::Own(&tank::INFLOW)), "m^3/s");
     setup.agents[0].robot.axes[0].unit = sim::AxisUnit::Own;
     assert_eq!([Signal::Own(&tank::INFLOW), Signal::Position].map(|signal| unit(&setup, signal)), ["m^3/s", "1"]);
+}
+
+/// Its controller has a state that it does not show, and which reaches infinity at t = 1 s: χ̇ = χ².
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct HidingFile {}
+
+impl LawKind for HidingFile {
+    fn table() -> LawTable {
+        LawTable { key: "hiding", description: "A state that nobody sees.", made_for: "tanks" }
+    }
+
+    fn suits(robot: &RobotSetup) -> bool {
+        robot.kind.is::<tank::Tank>()
+    }
+
+    fn law(&self, _: &LawReader<'_>) -> Result<Arc<dyn Law>, Fault> {
+        Ok(Arc::new(Hiding))
+    }
+}
+
+#[derive(Debug)]
+struct Hiding;
+
+impl Law for Hiding {
+    fn words(&self) -> LawWords {
+        LawWords { name: "the law that hides", made_for: "tanks" }
+    }
+
+    fn interface(&self, _: &RobotSetup) -> Option<Interface> {
+        Some(Interface::tracking(&["level"]))
+    }
+
+    fn known(&self) -> Known {
+        Known::Checked
+    }
+
+    fn block(&self, assembly: &Assembly<'_>) -> Result<Block, SetupError> {
+        let plant = VectorField::new(1, [(Signal::Position, 1)], [(Signal::Torque, 1)], |_, _, dx| dx.fill(0.0));
+        let law = |given: FeedbackInput<'_>, asked: ControllerOutput<'_>| {
+            asked.input[0] = 0.0;
+            asked.d_state[0] = given.state[0] * given.state[0];
+        };
+        let balance = |_: Truth<'_, _>, _: FeedbackInput<'_>, _: &[f64]| Balance { value: 0.0, dissipation: 0.0 };
+        let controller = Feedback::new(&plant, [], law, balance).with_state([(Signal::Filter, vec![1.0])]);
+        assembly.solo(plant, controller)
+    }
+}
+
+/// The folder of such a run was one that `report` refused.
+#[test]
+fn regress_a_run_that_breaks_down_in_a_state_that_is_not_recorded_is_read_back() {
+    fn program(arguments: &[&str]) -> ExitCode {
+        let mut kinds = tank::kinds().unwrap();
+        kinds.add_law::<HidingFile>().unwrap();
+        program_with(&kinds, ["forwardstep"].iter().chain(arguments).copied())
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (folder.path().join("tanks.toml"), folder.path().join("run"));
+    fs::write(&file, TANKS.replace("[law.level]\ngain_per_s = 1.5", "[law.hiding]")).unwrap();
+    assert_ne!(program(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]), ExitCode::SUCCESS);
+    let summary = fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(summary.contains("broke_down") && summary.contains(".y.level"), "{summary}");
+    assert_report_is_rebuilt(program, &out);
 }

@@ -43,8 +43,8 @@ pub use agents::{
 };
 pub use build::run;
 pub use closed_loop::{
-    Assembly, Block, Energy, LimitError, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, recipe, recipes,
-    reference_dynamics, sampled_loop, validate,
+    Assembly, Block, Energy, LimitError, Periods, Powers, SampledLoop, SetupError, VelocityQuantity, check_shape,
+    recipe, recipes, reference_dynamics, sampled_loop, validate,
 };
 pub use inside::{Inside, Place, Watch};
 pub use jumps::{HeardAt, InputJump, InputOrder, NetworkJump, input_orders};
@@ -61,7 +61,7 @@ pub use setup::{
     ATOL, Actuators, AgentSetup, Axis, AxisUnit, Control, Exchange, Failures, Method, RECORD_EVERY_S, RTOL, RecordAt,
     RobotSetup, Sensors, Setup, Solver, Start, TimeSpan, VelocitySensor,
 };
-pub use simulate::{Observers, check_recording, recorded_columns, simulate, simulate_with};
+pub use simulate::{Observers, check_recording, check_setup, recorded_columns, simulate, simulate_with, state_entries};
 pub use system::{
     ActuatorLimits, Attachments, Coordinates, Interface, Law, LawWords, Line, LineValue, PositionKind, Robot,
     RobotInterface,

@@ -124,35 +124,19 @@ impl Network {
     /// # Errors
     /// [`NetworkError`] for the first thing found.
     pub fn validate(&self, end_s: f64) -> Result<(), NetworkError> {
-        if self.agents == 0 {
-            return Err(NetworkError::NoAgents);
-        }
-        if self.schedule.graphs.is_empty() {
-            return Err(NetworkError::NoGraphs);
-        }
+        self.check_shape()?;
         for (graph, edges) in self.schedule.graphs.iter().enumerate() {
             let mut seen = std::collections::HashSet::new();
             for (k, edge) in edges.iter().enumerate() {
                 let (from, to) = (edge.from, edge.to);
-                if from >= self.agents || to >= self.agents {
-                    return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
-                }
                 if from == to {
                     return Err(NetworkError::SelfLoop { graph, agent: from });
                 }
                 if !seen.insert((from, to)) {
                     return Err(NetworkError::DuplicateEdge { graph, from, to });
                 }
-                if let Weight::Formula(weight) = edge.weight
-                    && weight >= self.weights.len()
-                {
-                    return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
-                }
                 let at = || Path::from("network.graphs").index(graph).index(k);
                 edge.weight.check(&self.weights).map_err(|error| error.under(at()))?;
-                if edge.delay >= self.delays.len() {
-                    return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
-                }
             }
         }
         self.coupling.check()?;
@@ -163,6 +147,40 @@ impl Network {
             let checked = delay.check(end_s).and_then(|()| all.add(what, drawn as f64));
             Ok(checked.map_err(|error| error.under(Path::from("network.delays").index(index)))?)
         })
+    }
+
+    /// Checks that there are agents and graphs, and that edges name agents, weights and delays that there are.
+    ///
+    /// # Errors
+    /// [`NetworkError`] for the first thing found.
+    pub(crate) fn check_shape(&self) -> Result<(), NetworkError> {
+        if self.agents == 0 {
+            return Err(NetworkError::NoAgents);
+        }
+        if self.schedule.graphs.is_empty() {
+            return Err(NetworkError::NoGraphs);
+        }
+        for (graph, edge) in self
+            .schedule
+            .graphs
+            .iter()
+            .enumerate()
+            .flat_map(|(graph, edges)| edges.iter().map(move |edge| (graph, edge)))
+        {
+            let (from, to) = (edge.from, edge.to);
+            if from >= self.agents || to >= self.agents {
+                return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
+            }
+            if let Weight::Formula(weight) = edge.weight
+                && weight >= self.weights.len()
+            {
+                return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
+            }
+            if edge.delay >= self.delays.len() {
+                return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
+            }
+        }
+        Ok(())
     }
 
     /// Checks that the packets, random holds and formulas of links are known until `end_s`, and that what is from outside is until

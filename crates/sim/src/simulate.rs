@@ -184,6 +184,25 @@ pub fn recorded_columns(setup: &Setup) -> Result<Vec<Column>, SetupError> {
     Ok(empty_columns(&ClosedLoop::new(setup)?, setup.agents.len()).0)
 }
 
+/// What each entry of the state of a run of `setup` is: agent, signal and axis. A run may break down in one that it does not record, as where a
+/// controller from outside does not show all of its own.
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning.
+pub fn state_entries(setup: &Setup) -> Result<Vec<(usize, Signal, usize)>, SetupError> {
+    let closed_loop = ClosedLoop::new(setup)?;
+    Ok((0..closed_loop.start().len()).map(|state| closed_loop.locate(state)).collect())
+}
+
+/// Whether a setup has a meaning: all that [`simulate`] asks of it but room for its rows ([`check_recording`]).
+///
+/// # Errors
+/// [`SetupError`] when it has none.
+pub fn check_setup(setup: &Setup) -> Result<(), SetupError> {
+    ClosedLoop::new(setup)?;
+    Ok(setup.network.lasts_until(setup.time.end_s)?)
+}
+
 /// Whether the rows of a run fit into memory, before anything is computed.
 ///
 /// # Errors

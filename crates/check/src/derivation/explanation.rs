@@ -1,6 +1,6 @@
 //! What is explained of a setup: sections of words and formulas, for every design in it.
 
-use forwardstep_sim::Setup;
+use forwardstep_sim::{Setup, check_setup};
 
 use super::case::{Case, cases};
 use super::formula::Formula;
@@ -120,10 +120,11 @@ impl Section {
 /// Explains a setup: what z is, the closed loop as a differential cascade, and how its degree is reduced, derived from the setup's own
 /// reference dynamics and laws.
 ///
-/// `setup` should be one that [`forwardstep_sim::simulate`] accepts.
+/// Of a setup that has no meaning ([`forwardstep_sim::check_setup`]) nothing is explained.
 ///
 /// **Source**: Sections III to V of the paper; every formula names its own. Nothing is said of reference dynamics and laws from outside
 /// that do not say what they are.
 pub fn explain(setup: &Setup) -> Explanation {
-    Explanation { designs: cases(setup).iter().map(Case::explained).collect() }
+    let cases = if check_setup(setup).is_ok() { cases(setup) } else { Vec::new() };
+    Explanation { designs: cases.iter().map(Case::explained).collect() }
 }

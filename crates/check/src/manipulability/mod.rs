@@ -37,7 +37,7 @@ pub use measured::{Measured, NotMeasured, Trial, measure};
 
 use forwardstep_core::reference::polynomial;
 use forwardstep_sim::reference::PureIntegral;
-use forwardstep_sim::{Adaptive, Setup, Start};
+use forwardstep_sim::{Adaptive, Setup, Start, check_shape};
 use nalgebra::DMatrix;
 use thiserror::Error;
 
@@ -139,6 +139,7 @@ impl Manipulability {
     /// # Errors
     /// [`NoManipulability`] says why there is none.
     pub fn of(setup: &Setup, agent: usize, axis: usize) -> Result<Manipulability, NoManipulability> {
+        check_shape(setup).map_err(|error| NoIdeal::from(Box::new(error)))?;
         let designed = designed(setup);
         let setup = designed.as_ref().unwrap_or(setup);
         let own = setup.agents.get(agent).filter(|own| axis < own.robot.axes.len());

@@ -10,7 +10,7 @@ use forwardstep_sim::{Evaluator, Setup};
 use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
-use super::led::Led;
+use super::led::{Led, close_rows};
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
 use super::power::{PowerBound, between_w_of, held_w_of, is_fed, noise_w_of, pushed_w, steps_w_of};
@@ -19,7 +19,7 @@ use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
 /// States that are looked at in all, spread evenly over the rows, but two of every agent at least.
-const MOST: usize = 3000;
+const MOST: usize = 20_000;
 /// A time that is a whole number of periods, give or take rounding, is that number.
 const SLACK_PERIODS: f64 = 1e-6;
 
@@ -34,6 +34,8 @@ pub struct Along {
     pub power: Option<PowerReached>,
     /// States that were looked at for the first two.
     pub states: usize,
+    /// Rows that these are of.
+    pub rows: usize,
 }
 
 /// The mean of Σ sᵀKs over the rows of a run, and over the periods that they stand in, beside what it cannot exceed.
@@ -74,6 +76,11 @@ impl<'a> Columns<'a> {
         Columns(recording.columns.iter().map(|c| ((c.agent, c.signal, c.axis), &c.values[..])).collect())
     }
 
+    /// A signal of an agent on one axis, row by row.
+    pub(super) fn column(&self, agent: usize, signal: Signal, axis: usize) -> Option<&'a [f64]> {
+        self.0.get(&(agent, signal, axis)).copied()
+    }
+
     /// A signal of an agent at one row.
     pub(super) fn at(&self, agent: usize, signal: Signal, axes: usize, row: usize) -> Option<Vec<f64>> {
         (0..axes).map(|axis| self.0.get(&(agent, signal, axis))?.get(row).copied()).collect()
@@ -95,6 +102,7 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
     let mut found = Along::default();
     for row in rows(recording.t_s.len(), sampled.len()) {
         let t_s = recording.t_s[row];
+        found.rows += 1;
         for (agent, gains, evaluator) in &mut sampled {
             found.states += 1;
             if let (Some(gains), Some((hold, period_s))) = (gains, hold)
@@ -127,7 +135,6 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
     let span_s = last_s - first_s;
     let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
     let (mut noise_w, mut steps_w, mut held_w, mut between_w, mut friction_w) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    let looked = self::rows(rows, setup.agents.len());
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
         let axes = gains.damping.nrows();
@@ -157,7 +164,8 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
             let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
             Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz?, has_sign: true })
         };
-        let way: Vec<Led> = looked.iter().filter_map(state).collect();
+        let way: Vec<Led> =
+            close_rows(columns, rows, [agent, axes], setup.agents.len()).iter().filter_map(state).collect();
         let way: Vec<&Led> = way.iter().collect();
         let own = &setup.agents[agent];
         held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;

@@ -8,11 +8,15 @@ use forwardstep_sim::trajectory::Trajectory;
 
 use super::along::Columns;
 use crate::kinds::is_lagrangian;
-use crate::prediction::{reference_alone, reference_behind};
+use crate::prediction::{reference_alone, reference_behind, reference_closely};
 
 /// States that are looked at in all, and of one agent.
 const MOST: usize = 1024;
 const MOST_OF_ONE: usize = 200;
+
+/// The same where integrals are taken over them.
+const MOST_CLOSE: usize = 40_000;
+const MOST_CLOSE_OF_ONE: usize = 2000;
 
 /// Work for the reference dynamics, in nanoseconds, roughly: what they reach with it is looked at.
 const WORK: f64 = 2e8;
@@ -46,12 +50,29 @@ impl Led {
 /// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
 pub(super) fn way(setup: &Setup) -> Vec<Led> {
     let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
-    states(setup, &those)
+    states(setup, &those, Pace::Even)
+}
+
+/// The same, close to each other where much happens, so that what they pass through can be integrated: a start that takes ten seconds of an hour
+/// is in no state of an even pace.
+pub(super) fn close_way(setup: &Setup) -> Vec<Led> {
+    let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
+    states(setup, &those, Pace::Close)
+}
+
+/// How states are taken from a recording.
+#[derive(Clone, Copy, PartialEq)]
+enum Pace {
+    Even,
+    Close,
 }
 
 /// States of `agents` on their way; none where nothing is known of it, or there are too many.
-fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
-    let each = (MOST / agents.len().max(1)).min(MOST_OF_ONE);
+fn states(setup: &Setup, agents: &[usize], pace: Pace) -> Vec<Led> {
+    let each = match pace {
+        Pace::Even => (MOST / agents.len().max(1)).min(MOST_OF_ONE),
+        Pace::Close => (MOST_CLOSE / agents.len().max(1)).min(MOST_CLOSE_OF_ONE),
+    };
     if each < 2 {
         return Vec::new();
     }
@@ -61,7 +82,10 @@ fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
     } else if setup.following().is_some() {
         reference_behind(setup, WORK)
     } else {
-        reference_alone(setup, WORK)
+        match pace {
+            Pace::Even => reference_alone(setup, WORK),
+            Pace::Close => reference_closely(setup, WORK),
+        }
     };
     let columns = alone.as_ref().map(|recording| (Columns::of(recording), &recording.t_s));
     let end_s = setup.time.end_s;
@@ -74,7 +98,7 @@ fn states(setup: &Setup, agents: &[usize]) -> Vec<Led> {
             false => (leader, columns.as_ref()),
         };
         let rows = if columns.is_some() && motion.is_some() { (each / 2).max(2) } else { each };
-        found.extend(columns.iter().flat_map(|(columns, t_s)| recorded(columns, t_s, agent, axes, rows)));
+        found.extend(columns.iter().flat_map(|(columns, t_s)| recorded(columns, t_s, [agent, axes], rows, pace)));
         // Who follows a leader is with it where work did not lead.
         let reached_s = found.last().filter(|led| led.agent == agent).map_or(f64::NEG_INFINITY, |led| led.t_s);
         let motion = motion.filter(|motion| motion.axes() == axes);
@@ -96,9 +120,13 @@ fn along(motion: &Trajectory, agent: usize, end_s: f64, each: usize) -> impl Ite
     })
 }
 
-/// An agent at `each` rows of so many, where they have all that is needed.
-fn recorded(columns: &Columns<'_>, t_s: &[f64], agent: usize, axes: usize, each: usize) -> Vec<Led> {
-    let mut rows: Vec<usize> = (0..each).map(|k| k * t_s.len().saturating_sub(1) / (each - 1)).collect();
+/// An agent with so many axes at `each` rows of so many, where they have all that is needed.
+fn recorded(columns: &Columns<'_>, t_s: &[f64], [agent, axes]: [usize; 2], each: usize, pace: Pace) -> Vec<Led> {
+    let last = t_s.len().saturating_sub(1);
+    let mut rows: Vec<usize> = match pace {
+        Pace::Even => (0..each).map(|k| k * last / (each - 1)).collect(),
+        Pace::Close => busy(columns, t_s.len(), [agent, axes], each),
+    };
     rows.dedup();
     let state = |row: usize| {
         let signal = |signal| columns.at(agent, signal, axes, row);
@@ -106,4 +134,41 @@ fn recorded(columns: &Columns<'_>, t_s: &[f64], agent: usize, axes: usize, each:
         Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz?, has_sign: true })
     };
     rows.into_iter().filter_map(state).collect()
+}
+
+/// Rows of one of so many agents that are close enough for integrals.
+pub(super) fn close_rows(columns: &Columns<'_>, rows: usize, [agent, axes]: [usize; 2], agents: usize) -> Vec<usize> {
+    busy(columns, rows, [agent, axes], (MOST_CLOSE / agents.max(1)).clamp(2, MOST_CLOSE_OF_ONE))
+}
+
+/// At most so many rows, of which half are spent evenly, and half where ż and q̇ of an agent change, each axis as a part of all that it does.
+fn busy(columns: &Columns<'_>, rows: usize, [agent, axes]: [usize; 2], each: usize) -> Vec<usize> {
+    if rows <= each {
+        return (0..rows).collect();
+    }
+    let mut share = vec![0.0; rows];
+    for (signal, axis) in [Signal::Velocity, Signal::Reference(1)]
+        .into_iter()
+        .flat_map(|signal| (0..axes).map(move |axis| (signal, axis)))
+    {
+        let values = columns.column(agent, signal, axis).unwrap_or_default();
+        let steps = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let all: f64 = steps().sum();
+        if all > 0.0 && all.is_finite() {
+            share.iter_mut().skip(1).zip(steps()).for_each(|(share, step)| *share += step / all);
+        }
+    }
+    let (all, even) = (share.iter().sum::<f64>().max(f64::MIN_POSITIVE), 1.0 / rows as f64);
+    let mut so_far = 0.0;
+    let progress: Vec<f64> = share
+        .iter()
+        .map(|share| {
+            so_far += even + share / all;
+            so_far
+        })
+        .collect();
+    let row = |k: usize| progress.partition_point(|done| *done < so_far * k as f64 / (each - 1) as f64).min(rows - 1);
+    let mut chosen: Vec<usize> = std::iter::once(0).chain((1..each - 1).map(row)).chain([rows - 1]).collect();
+    chosen.dedup();
+    chosen
 }

@@ -33,6 +33,8 @@ pub struct StaticLoad {
     pub limit: f64,
     /// Postures that were looked at.
     pub postures: usize,
+    /// Whether a push that does not end before the run does acts on somebody whose limits are known: what it asks for is not counted.
+    pub pushed: bool,
 }
 
 impl StaticLoad {
@@ -55,7 +57,13 @@ impl StaticLoad {
         each_posture(setup, &those, |agent, q, _| look(agent, q));
         // A way may lead where no start is.
         way.iter().filter(|led| those.contains(&led.agent)).for_each(|led| look(led.agent, &led.q));
-        worst.map(|found| StaticLoad { postures, ..found })
+        let is_pushed = |agent: usize| {
+            let own = &setup.agents[agent];
+            let limited = those.contains(&agent) || own.robot.kind.is::<RotorcraftModel>();
+            limited && own.pushes.iter().any(|push| push.span_s()[1] >= setup.time.end_s)
+        };
+        let pushed = (0..setup.agents.len()).any(is_pushed);
+        worst.map(|found| StaticLoad { postures, pushed, ..found })
     }
 
     /// Whether it is the thrust of a rotorcraft, whatever its posture.
@@ -70,7 +78,11 @@ impl StaticLoad {
 
     /// Whether the limits suffice to stand still.
     pub fn answer(&self) -> PracticalAnswer {
-        if self.share() < 1.0 { PracticalAnswer::Adequate } else { PracticalAnswer::Inadequate }
+        match self.share() < 1.0 {
+            true if self.pushed => PracticalAnswer::NotShown,
+            true => PracticalAnswer::Adequate,
+            false => PracticalAnswer::Inadequate,
+        }
     }
 }
 
@@ -86,7 +98,7 @@ pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q
     let worst = limited.reduce(|one, other| if share(&other) > share(&one) { other } else { one });
     let (axis, (torque, limit)) = worst?;
     let axis_name = own.robot.axes.get(axis)?.name.clone();
-    Some(StaticLoad { agent: Named::of(setup, agent), axis, axis_name, torque, limit, postures: 1 })
+    Some(StaticLoad { agent: Named::of(setup, agent), axis, axis_name, torque, limit, postures: 1, pushed: false })
 }
 
 fn worse(one: StaticLoad, other: StaticLoad) -> StaticLoad {
@@ -99,7 +111,15 @@ fn hovering(setup: &Setup) -> Option<StaticLoad> {
         let model = agent.robot.kind.downcast::<RotorcraftModel>()?;
         let [_, most] = model.rotors.as_ref()?.thrust;
         let (agent, torque) = (Named::of(setup, index), agent.robot.theta.first()? * model.gravity);
-        Some(StaticLoad { agent, axis: 0, axis_name: THRUST.to_owned(), torque, limit: 4.0 * most, postures: 1 })
+        Some(StaticLoad {
+            agent,
+            axis: 0,
+            axis_name: THRUST.to_owned(),
+            torque,
+            limit: 4.0 * most,
+            postures: 1,
+            pushed: false,
+        })
     };
     setup.agents.iter().enumerate().filter_map(load).reduce(worse)
 }

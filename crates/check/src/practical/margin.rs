@@ -4,15 +4,16 @@
 //! state. At rest they miss what velocities and accelerations make of Y, which for ships is most of it; so that states on the way of the
 //! references are looked at, too.
 
-use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Setup, check_setup};
 
 use super::PracticalAnswer;
 use super::held::{Hold, longest_period_s};
 use super::led::{Led, way};
 use super::looped::degree;
 use super::postures::each_posture;
-use super::rates::{Gains, Rates, dynamics, fastest_damping};
+use super::rates::{Gains, Rates, dynamics, fastest_damping_of};
 use crate::hypothesis::Named;
+use crate::inertia::Inertias;
 use crate::kinds::is_lagrangian;
 
 /// σ should not exceed this: the held damping then does not overshoot where commands act at once, and there is as much room for what
@@ -104,6 +105,7 @@ impl SamplingMargin {
     /// Of the agents of a setup under (6)–(7); `None` when control is continuous, there are none, or no mass matrix can be factored.
     pub fn of(setup: &Setup) -> Option<SamplingMargin> {
         setup.control.as_ref()?;
+        check_setup(setup).ok()?;
         SamplingMargin::on(setup, &way(setup))
     }
 
@@ -125,7 +127,9 @@ impl SamplingMargin {
         };
         let start = worst_of(&mut looked.iter().filter(|looked| looked.at == At::Start))?;
         let worst = worst_of(&mut looked.iter())?;
-        let anywhere_per_s = fastest_damping(setup).and_then(|found| found.anywhere_per_s);
+        let all: Vec<usize> = (0..setup.agents.len()).collect();
+        let fastest = fastest_damping_of(setup, &all, &mut Inertias::default());
+        let anywhere_per_s = fastest.and_then(|found| found.anywhere_per_s);
         let learners = (0..setup.agents.len()).filter(|agent| setup.tracks(*agent));
         let led = looked.iter().filter(|looked| matches!(looked.at, At::Led { .. })).count();
         let longest = |at_most: f64| longest(&looked, period_s, &|_| hold, at_most);
@@ -148,6 +152,7 @@ impl SamplingMargin {
     /// The period at which σ of a setup is 1, as [`SamplingMargin::longest_s`], where one near `near_s` is held as `hold` says, whatever its own
     /// control is.
     pub fn longest_period_s(setup: &Setup, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
+        check_setup(setup).ok()?;
         let looked = looked(setup, &way(setup));
         if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
     }

@@ -33,9 +33,9 @@ mod power;
 pub(crate) mod rates;
 mod words;
 
-use forwardstep_sim::{Adaptive, Setup};
+use forwardstep_sim::{Adaptive, Setup, check_setup};
 
-use self::led::way;
+use self::led::{close_way, way};
 use self::loads::limits;
 use crate::hypothesis::Named;
 use crate::instance::designed;
@@ -197,8 +197,11 @@ impl Practical {
     }
 }
 
-/// What can be said of `setup` as it is deployed.
+/// What can be said of `setup` as it is deployed; nothing where it has no meaning ([`check_setup`]).
 pub fn practical(setup: &Setup) -> Practical {
+    if check_setup(setup).is_err() {
+        return Practical::default();
+    }
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
     let limited = (0..setup.agents.len()).any(|agent| limits(setup, agent).is_some());
@@ -217,7 +220,9 @@ pub fn practical(setup: &Setup) -> Practical {
         let grows = whole.answer() >= PracticalAnswer::NotShown || whole.lasting_per_s().is_some();
         grows || whole.start.slowed_per_s().is_some()
     });
-    let power = PowerBound::on(setup, margin.as_ref(), &way).filter(|_| !unbounded);
+    let power =
+        PowerBound::on(setup, margin.as_ref(), || if setup.control.is_some() { close_way(setup) } else { Vec::new() });
+    let power = power.filter(|_| !unbounded);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !unbounded).map(Finding::TrackingDisagreement);
     let power = power.map(Finding::TrackingPower);

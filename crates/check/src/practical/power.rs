@@ -19,7 +19,8 @@
 //! A torque that is held is that of its sample, δ h late, while the motion asks for w = M ż + C z + g as it is now: over a period
 //! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
 //! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest. It begins with
-//! zero, so that at sample k it still lacks e^(−ωh k) q̇(0): over the span T the mean of nᵀKn is h q̇(0)ᵀK q̇(0)/((1 − e^(−2ωh)) T).
+//! zero, so that at sample k it still lacks e^(−ωh k) q̇(0): over the span T the mean of nᵀKn is h q̇(0)ᵀK q̇(0)/((1 − e^(−2ωh)) T). Until the
+//! first torque comes, δ h after the start, all of w is missing: d = −w, whose mean square is δ h wᵀK⁻¹w/T.
 //!
 //! All of this is s at the samples. Between them z is held and q̇ moves on, so that s gains ż times the time since the sample: a saw tooth whose
 //! mean square is ⅓ h² żᵀKż, and which adds at most its root to that of the mean of sᵀKs.
@@ -90,10 +91,15 @@ pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f6
 impl PowerBound {
     /// Over the whole run of a setup with its sampling margin and states on the way of its agents; `None` where there is nothing that feeds V but its start, or where V(0), a
     /// push or σ is not known before the run.
-    pub(super) fn on(setup: &Setup, margin: Option<&SamplingMargin>, way: &[Led]) -> Option<PowerBound> {
+    pub(super) fn on(
+        setup: &Setup,
+        margin: Option<&SamplingMargin>,
+        way: impl FnOnce() -> Vec<Led>,
+    ) -> Option<PowerBound> {
         if !is_fed(setup) {
             return None;
         }
+        let way = way();
         let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
         let (mut noise_w, mut steps_w, mut held_w, mut between_w) = (0.0, 0.0, 0.0, 0.0);
         let span_s = setup.time.end_s;
@@ -105,11 +111,7 @@ impl PowerBound {
             noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
             steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
             let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
-            if let Some(control) = &setup.control {
-                let moving = held_w_of(control, agent, &gains, &own, span_s)?.sqrt();
-                let drive = moving + begun_w_of(control, &agent.start.dq, &gains, span_s).sqrt();
-                held_w += drive * drive;
-            }
+            held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, agent, &gains, &own, span_s))?;
             between_w += setup.control.as_ref().map_or(0.0, |control| between_w_of(control, &gains, &own, span_s));
             agents += 1;
         }
@@ -204,7 +206,11 @@ pub(super) fn held_w_of(
         held += took_s * since * rate.dot(&(&compliance * &rate));
     }
     let lagging = lag_s * lag_s * mean_acceleration_w_s2(gains, way, span_s);
-    let drive = (held / span_s).sqrt() + lagging.sqrt();
+    let begun = way.first().map_or(0.0, |first| begun_w_of(control, &first.dq, gains, span_s));
+    // Until the first torque comes there is none.
+    let fallen =
+        way.first().and_then(|first| asked(first)).map_or(0.0, |w| hold.delay_s * w.dot(&(&compliance * &w)) / span_s);
+    let drive = [held / span_s, lagging, begun, fallen].into_iter().map(f64::sqrt).sum::<f64>();
     Some(drive * drive)
 }
 

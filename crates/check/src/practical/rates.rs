@@ -24,7 +24,7 @@
 
 use forwardstep_core::Gain;
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup};
+use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup, check_shape};
 use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
@@ -157,6 +157,7 @@ pub struct FastestDamping {
 
 /// [`FastestDamping`] of a setup; `None` when no agent is under (6)–(7), or no mass matrix can be factored.
 pub fn fastest_damping(setup: &Setup) -> Option<FastestDamping> {
+    check_shape(setup).ok()?;
     let all: Vec<usize> = (0..setup.agents.len()).collect();
     fastest_damping_of(setup, &all, &mut Inertias::default())
 }

@@ -80,15 +80,19 @@ fn too_slow(SamplingMargin { start, worst, held_by_references, .. }: &SamplingMa
 fn standing(load: &StaticLoad) -> String {
     let StaticLoad { agent, axis_name, torque, limit, postures, .. } = load;
     let (torque, limit) = (rounded(*torque), rounded(*limit));
+    let pushed = if load.pushed { "; what a push that does not end asks for is not counted" } else { "" };
     if load.is_thrust() {
-        return format!("{} hovers with m g = {torque} N of the {limit} N that its rotors give", agent.name);
+        return format!("{} hovers with m g = {torque} N of the {limit} N that its rotors give{pushed}", agent.name);
     }
     let those = if *postures == 1 {
         "at the start".into()
     } else {
         format!("over {postures} postures between the starts and on the way")
     };
-    format!("the largest share of a torque limit {those}: |g| is {torque} of {limit} ({}, {axis_name})", agent.name)
+    format!(
+        "the largest share of a torque limit {those}: |g| is {torque} of {limit} ({}, {axis_name}){pushed}",
+        agent.name
+    )
 }
 
 fn clipped(found: &ClippedCommands) -> String {
@@ -122,7 +126,11 @@ fn power(bound: &PowerBound) -> String {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
         _ => String::new(),
     };
-    let sampled = if bound.sigma > 0.0 { format!(", with σ = {}", rounded(bound.sigma)) } else { String::new() };
+    let sampled = if bound.sigma > 0.0 {
+        format!("; their square roots add up, and the whole is divided by 1 − σ, with σ = {}", rounded(bound.sigma))
+    } else {
+        String::new()
+    };
     format!(
         "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{}{sampled}",
         rounded_up(bound.mean_w),

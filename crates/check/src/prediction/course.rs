@@ -6,6 +6,7 @@ use std::sync::Arc;
 use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{
     Adaptive, AgentSetup, ChainLaw, PositionOnlyLaw, Progress, RecordAt, Recording, Setup, Signal, ThrustLaw, TimeSpan,
+    check_setup,
 };
 use thiserror::Error;
 
@@ -127,9 +128,6 @@ pub enum NoCourse {
     /// There is nothing to compare.
     #[error("there are no two agents to compare")]
     FewerThanTwoAgents,
-    /// Agents have different numbers of axes.
-    #[error("the agents do not have the same axes")]
-    Axes,
     /// The reference dynamics alone were not simulated to the end.
     #[error(transparent)]
     Unfinished(#[from] Unfinished),
@@ -169,11 +167,9 @@ pub fn course_within(
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Course, NoCourse> {
     let ideal = ideal(setup)?;
+    check_setup(setup).map_err(Unfinished::from)?;
     let [first, _, ..] = ideal.agents.as_slice() else { return Err(NoCourse::FewerThanTwoAgents) };
     let axes = first.robot.axes.len();
-    if ideal.agents.iter().any(|agent| agent.robot.axes.len() != axes) {
-        return Err(NoCourse::Axes);
-    }
     let before = told_before(setup, &ideal);
     let Rows { ideal, of_run, are_close } = with_enough_rows(ideal);
     let recording = completed(&ideal, before.as_deref(), &mut work, observer)?;
@@ -272,6 +268,13 @@ fn with_enough_rows(mut ideal: Setup) -> Rows {
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.
 pub(crate) fn reference_alone(setup: &Setup, mut work: f64) -> Option<Recording> {
     let ideal = ideal(setup).ok()?;
+    let before = told_before(setup, &ideal);
+    Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
+}
+
+/// The same with rows that are close enough for integrals.
+pub(crate) fn reference_closely(setup: &Setup, mut work: f64) -> Option<Recording> {
+    let Rows { ideal, .. } = with_enough_rows(ideal(setup).ok()?);
     let before = told_before(setup, &ideal);
     Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
 }

@@ -18,8 +18,8 @@ use forwardstep_core::plant::Vehicle;
 use forwardstep_core::robot::PointMass;
 use forwardstep_sim::reference::PureIntegral;
 use forwardstep_sim::{
-    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, Solver, Start,
-    ThrustLaw, VehicleModel,
+    AgentSetup, Axis, ChainLaw, ChainModel, Known, PositionOnlyLaw, RobotSetup, RotorcraftModel, Setup, SetupError,
+    Solver, Start, ThrustLaw, VehicleModel, check_shape,
 };
 use thiserror::Error;
 
@@ -29,7 +29,7 @@ use crate::kinds::{is_its_own_reference, is_lagrangian};
 use crate::links::may_time_out;
 
 /// Why there is no setup in which everybody follows its reference exactly.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoIdeal {
     /// They follow a leader.
     #[error("everybody follows a leader")]
@@ -58,6 +58,9 @@ pub enum NoIdeal {
         /// Index of the agent.
         agent: usize,
     },
+    /// The parts of the setup do not fit together.
+    #[error("the parts of the setup do not fit together: {0}")]
+    Setup(#[from] Box<SetupError>),
     /// Too few roots for its robot, or a start of the wrong length: the setup has no meaning.
     #[error("the start of agent number {} does not fit its order", agent + 1)]
     Start {
@@ -75,8 +78,9 @@ pub enum NoIdeal {
 /// keeps it always. Vehicles in formation are replaced by what agrees, x − d.
 ///
 /// # Errors
-/// [`NoIdeal`] when the reference of some agent depends on more than the network.
+/// [`NoIdeal`] when the reference of some agent depends on more than the network, or the parts of the setup do not fit together.
 pub fn ideal(setup: &Setup) -> Result<Setup, NoIdeal> {
+    check_shape(setup).map_err(Box::new)?;
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
     let reference = &setup.reference;

@@ -27,7 +27,7 @@ mod unfinished;
 
 pub use cascade::{CascadeSpread, NoCascade};
 pub use course::{COURSE_WORK, Course, NoCourse, StartError, course, course_within};
-pub(crate) use course::{disagreement, reference_alone, reference_behind};
+pub(crate) use course::{disagreement, reference_alone, reference_behind, reference_closely};
 pub use guaranteed::{ClassBound, Fall, GuaranteedRate, NoGuaranteedRate, Repeat, guaranteed_rate};
 pub use ideal::{NoIdeal, ideal, told_before};
 pub(crate) use ideal::{family_start, order};

@@ -36,7 +36,7 @@ use std::ops::ControlFlow;
 use forwardstep_core::LengthError;
 use forwardstep_sim::recording::{Outcome, Signal};
 use forwardstep_sim::{
-    Ending, InputJump, NetworkJump, Observers, Progress, Setup, SetupError, input_orders, simulate_with,
+    Ending, InputJump, NetworkJump, Observers, Progress, Setup, SetupError, check_setup, input_orders, simulate_with,
 };
 use thiserror::Error;
 
@@ -164,10 +164,10 @@ pub fn smoothness(
     setup: &Setup,
     observer: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Smoothness, NoSmoothness> {
+    check_setup(setup)?;
     if setup.control.is_some() {
         return Err(NoSmoothness::Sampled);
     }
-    forwardstep_sim::validate(setup)?;
     let mut agents = Vec::new();
     let mut expansions = Vec::new();
     for (agent, orders) in input_orders(setup)?.into_iter().enumerate() {

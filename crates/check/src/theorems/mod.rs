@@ -13,8 +13,8 @@ mod tried;
 pub(crate) use following::certainly_slowest_per_s;
 pub(crate) use own_targets::{hurwitz, lowest_asked};
 
-use forwardstep_sim::Setup;
 use forwardstep_sim::reference::{Backstepping, Consensus, Desired, PureIntegral, Tracking};
+use forwardstep_sim::{Setup, check_shape};
 
 use crate::graphs::{dwell_time, spanning_tree};
 use crate::hypothesis::{Hypothesis, Id, ReferenceEvidence};
@@ -23,20 +23,31 @@ use crate::laws;
 use crate::links::{bounded_delays, bounded_weights, coupling};
 use crate::report::Report;
 use crate::surroundings::surroundings;
-use crate::theorem::Extension;
+use crate::theorem::{Extension, Theorem};
 
 /// Which theorem speaks about `setup`, and whether its hypotheses hold.
 ///
-/// `setup` should be one that [`forwardstep_sim::simulate`] accepts; what makes a setup meaningless is not looked at again.
+/// Of a setup whose parts do not fit together ([`check_shape`]) it is [`Theorem::Refused`], without hypotheses.
 ///
 /// **Source**: Theorem 1 for (3), Remark 3 for (23), Theorem 2 for (a1), Theorem 3 for (a5) and (24); Section III-A for
 /// (aa10), which is (a5) of order one, and for the baseline (aa6), about which the paper promises nothing.
 pub fn check(setup: &Setup) -> Report {
-    if let Some((like, design)) = desired::recognised(setup) {
-        let mut report = check(&like);
-        report.hypotheses.insert(0, design);
-        return report;
+    if let Err(error) = check_shape(setup) {
+        let theorem = Theorem::Refused(Box::new(error));
+        return Report { theorem, promises: "nothing".to_owned(), hypotheses: Vec::new() };
     }
+    match desired::recognised(setup) {
+        Some((like, design)) => {
+            let mut report = checked(&like);
+            report.hypotheses.insert(0, design);
+            report
+        }
+        None => checked(setup),
+    }
+}
+
+/// Of a setup that has a meaning, and whose reference dynamics are what they are written as.
+fn checked(setup: &Setup) -> Report {
     let Report { theorem, promises, mut hypotheses } = of_reference(setup);
     hypotheses.extend(own_targets::bounded(setup));
     hypotheses.extend(laws::hypotheses(setup));

@@ -13,7 +13,7 @@ use forwardstep_sim::delay::{Delay, RandomHold, SawTooth};
 use forwardstep_sim::reference::{Backstepping, Consensus, PureIntegral, Tracking};
 use forwardstep_sim::schedule::{Phase, Schedule};
 use forwardstep_sim::{
-    Adaptive, ChainModel, Control, Exchange, Known, Outcome, Progress, RecordAt, Setup, Signal, Start,
+    Adaptive, AgentSetup, ChainModel, Control, Exchange, Known, Outcome, Progress, RecordAt, Setup, Signal, Start,
 };
 
 use crate::common::kinds::{blind_mass, cascade, chain, rest_at, tracking};
@@ -225,18 +225,19 @@ fn every_reason_for_no_course_is_the_one_that_is_said() {
         no(NoIdeal::Start { agent: 3 }),
         "order two has no z̈(0)"
     );
-    assert_eq!(said(&|setup| setup.agents[3].start.dq.clear()), no(NoIdeal::Start { agent: 3 }));
+    let unfit = |found: Option<NoCourse>| matches!(found, Some(NoCourse::Ideal(NoIdeal::Setup(_))));
+    assert!(unfit(said(&|setup| setup.agents[3].start.dq.clear())));
     assert!(matches!(
         said(&|setup| setup.agents[0].roots_per_s.real[1] = -1.0),
         Some(NoCourse::Unfinished(Unfinished::Setup(_)))
     ));
     let alone = |setup: &mut Setup| {
         setup.agents.truncate(1);
-        setup.network.agents = 1;
+        (setup.network.agents, setup.network.schedule) = (1, Schedule::fixed(Vec::new()));
     };
     assert_eq!(said(&alone), Some(NoCourse::FewerThanTwoAgents));
     let one = |setup: &mut Setup| setup.agents[1] = blind_mass(1.0, 1.0);
-    assert_eq!(said(&one), Some(NoCourse::Axes));
+    assert!(matches!(said(&one), Some(NoCourse::Unfinished(Unfinished::Setup(_)))), "it has one axis");
     let stop = course(&arms(Exchange::Position, 1), &mut |_| ControlFlow::Break(()));
     assert_eq!(stop, Err(NoCourse::Unfinished(Unfinished::Interrupted)));
 }
@@ -312,7 +313,8 @@ fn what_has_no_effect_while_everybody_follows_is_left_out() {
     let plain = arms(Exchange::Position, 2);
     let mut busy = plain.clone();
     for agent in &mut busy.agents {
-        (agent.manipulability, agent.enforce_limits) = (0.7, true);
+        agent.manipulability = 0.7;
+        enforce_limits(agent);
     }
     busy.control = Some(Control {
         failures: Default::default(),
@@ -420,6 +422,12 @@ fn peak_torques_are_those_of_the_reference_where_parameters_are_known_or_nearly_
     assert_eq!(predicted(&setup).peak_torques, [], "the torque of another law is not that of (6)");
 }
 
+/// Limits that nothing reaches.
+fn enforce_limits(agent: &mut AgentSetup) {
+    agent.enforce_limits = true;
+    agent.robot.axes.iter_mut().for_each(|axis| axis.effort_limit = Some(1e9));
+}
+
 #[test]
 fn eq_what_v_can_add_to_a_torque_is_that_of_its_norm() {
     // |Y ϑ| = m |ż| of a mass is zero while nobody hears anything and rests.
@@ -449,7 +457,7 @@ fn eq_what_v_can_add_to_a_torque_is_that_of_its_norm() {
     moving.agents[1].change_law(|law: &mut Adaptive| law.estimate_start = vec![3.0]);
     assert!(predicted(&moving).peak_torques.iter().all(|peak| peak.estimate_off == 0.0));
     // What may feed V takes the bound away: limits from the one that has them, a push from all.
-    setup.agents[1].enforce_limits = true;
+    enforce_limits(&mut setup.agents[1]);
     let without: Vec<usize> =
         predicted(&setup).peak_torques.iter().filter(|peak| peak.at_most.is_none()).map(|peak| peak.agent).collect();
     assert_eq!(without, [1, 1]);

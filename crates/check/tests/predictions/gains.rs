@@ -332,6 +332,7 @@ fn what_s_adds_is_said_with_its_numbers() {
     assert!(bound(&three).unwrap().axes.is_some());
     three.agents[0].pushes = setup.agents[1].pushes.clone();
     three.agents.truncate(1);
+    (three.network.agents, three.network.schedule) = (1, Schedule::fixed(Vec::new()));
     assert_eq!(bound(&three), None, "one alone agrees");
     let text = said(&setup.clone().sampled(500.0)).unwrap().1;
     assert!(
@@ -365,6 +366,7 @@ fn what_s_adds_is_said_with_its_numbers() {
     assert!(said(&setup).unwrap().1.starts_with("how large s is cannot be told before the run; over the fixed graph "));
     let (answer, text, numbers) = said(&{
         setup.network.coupling = Coupling::Tanh { scale: 1.0 };
+        setup.exchange = Exchange::Position;
         setup
     })
     .unwrap();

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use forwardstep::check::Id;
 use forwardstep::io::scenario::kinds::Kinds;
 use forwardstep::io::shown;
+use forwardstep::sim::quantity::with_power;
 
 use super::replace;
 use super::stop::Stop;
@@ -113,7 +114,11 @@ fn in_pieces(pieces: usize) -> String {
 /// A part in percent, with digits that say something whatever its size.
 fn percent(part: f64) -> String {
     let percent = 100.0 * part;
-    if percent == 0.0 || (1e-2..1e6).contains(&percent) { format!("{percent:.3}") } else { format!("{percent:.3e}") }
+    if percent == 0.0 || (1e-2..1e6).contains(&percent) {
+        format!("{percent:.3}")
+    } else {
+        with_power(&format!("{percent:.3e}"))
+    }
 }
 
 fn listed(broken: &[Id]) -> String {

@@ -4,7 +4,7 @@ use forwardstep::check::manipulability::{LowFrequency, Manipulability, Measured,
 use forwardstep::io::output::names;
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
-use forwardstep::sim::quantity::{number, rounded};
+use forwardstep::sim::quantity::{number, rounded, with_power};
 use forwardstep::sim::{Adaptive, Setup, Signal};
 use thiserror::Error;
 
@@ -212,7 +212,7 @@ fn digits(value: f64, gain: f64) -> String {
         return "0".into();
     }
     if !(1e-4..1e7).contains(&gain.abs()) {
-        return format!("{:.3e}", digits * last);
+        return with_power(&format!("{:.3e}", digits * last));
     }
     format!("{value:.*}", (-last.log10().round()).max(0.0) as usize)
 }
@@ -232,6 +232,6 @@ mod tests {
             (1.5, 0.0),
         ];
         let shown = found.map(|(value, gain)| digits(value, gain));
-        assert_eq!(shown, ["0.03255", "5.912e-10", "0", "0", "123.5", "1.5"]);
+        assert_eq!(shown, ["0.03255", "5.912 × 10⁻¹⁰", "0", "0", "123.5", "1.5"]);
     }
 }

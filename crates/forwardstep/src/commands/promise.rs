@@ -150,7 +150,12 @@ pub(crate) fn style(answer: Answer) -> anstyle::Style {
 /// Numbers to a precision that people compare by; of many the first few. What rounds to zero has no sign.
 pub(crate) fn list(values: &[f64]) -> String {
     // Adding zero takes the sign from a zero.
-    first(&values.iter().map(|value| format!("{:.6}", (value * 1e6).round() / 1e6 + 0.0)).collect::<Vec<_>>())
+    first(
+        &values
+            .iter()
+            .map(|value| format!("{:.6}", (value * 1e6).round() / 1e6 + 0.0).replace('-', "−"))
+            .collect::<Vec<_>>(),
+    )
 }
 
 fn first(values: &[String]) -> String {

@@ -8,6 +8,7 @@ use forwardstep::sim::{SetupError, VelocitySensor};
 use super::progress::Bar;
 use crate::arguments::SamplingLimitOptions;
 use crate::console::{Console, DIM, Plain, complain};
+use crate::number::short;
 use crate::status::Status;
 
 /// Ways to sample that a table shows for scenarios in continuous time: how late as a part of the period, and the filter in Hz.
@@ -99,7 +100,7 @@ fn tried(trial: Trial) -> String {
     // Periods that are tried may differ by half of what the one that is looked for is found to.
     let period = to_digits(1e3 * period_s, 4);
     if peak_error.is_finite() {
-        format!("{DIM}  {period} ms: {}{remains:.2e} remains at the end{DIM:#}", bounded(peak_error, ", "))
+        format!("{DIM}  {period} ms: {}{} remains at the end{DIM:#}", bounded(peak_error, ", "), short(remains))
     } else {
         format!("{DIM}  {period} ms: breaks down{DIM:#}")
     }
@@ -123,9 +124,9 @@ fn conclude(scenario: &Scenario, found: &SamplingLimit, console: &mut Console) {
         }
     });
     let accepted = format!(
-        "accepted is that {}at most {:.2e} remains at the end",
+        "accepted is that {}at most {} remains at the end",
         bounded(found.peak_error, ", and "),
-        found.remains
+        short(found.remains)
     );
     let runs = if found.trials.len() == 1 { "1 run".to_owned() } else { format!("{} runs", found.trials.len()) };
     let least = if found.remark == Some(LimitRemark::LongestTried) { "at least " } else { "" };
@@ -147,7 +148,7 @@ fn bounded(peak_error: f64, joined: &str) -> String {
     if (1e-3..1e6).contains(&peak_error) {
         format!("|s| ≤ {peak_error:.3}{joined}")
     } else {
-        format!("|s| ≤ {peak_error:.2e}{joined}")
+        format!("|s| ≤ {}{joined}", short(peak_error))
     }
 }
 
@@ -200,6 +201,6 @@ mod tests {
     fn regress_nothing_is_said_of_s_where_there_is_none_and_no_number_has_300_digits() {
         assert_eq!([0.0, f64::INFINITY].map(|peak| bounded(peak, ", ")), ["", ""]);
         let said = [1.9731, 1e-12, 3.5e170].map(|peak| bounded(peak, ", "));
-        assert_eq!(said, ["|s| ≤ 1.973, ", "|s| ≤ 1.00e-12, ", "|s| ≤ 3.50e170, "]);
+        assert_eq!(said, ["|s| ≤ 1.973, ", "|s| ≤ 1.00 × 10⁻¹², ", "|s| ≤ 3.50 × 10¹⁷⁰, "]);
     }
 }

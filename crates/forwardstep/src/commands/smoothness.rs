@@ -15,6 +15,7 @@ use forwardstep::io::output::{
 };
 use forwardstep::io::scenario::Scenario;
 use forwardstep::io::scenario::kinds::Kinds;
+use forwardstep::sim::quantity::with_power;
 use forwardstep::sim::{Progress, Setup, Signal};
 
 use super::replace;
@@ -300,7 +301,7 @@ fn digits(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         size if (1e-3..1e5).contains(&size) => format!("{value:.*}", places(value)),
-        _ => format!("{value:.2e}"),
+        _ => with_power(&format!("{value:.2e}")),
     }
 }
 

@@ -11,12 +11,12 @@ use forwardstep::io::output::{
     coarse_rows,
 };
 use forwardstep::io::{instant, shown};
-use forwardstep::sim::quantity::with_power;
 use forwardstep::sim::reference::Backstepping;
 use forwardstep::sim::{ClippedSamples, Drive, Setup, Signal};
 
 use super::progress::speed;
 use super::promise::list;
+use crate::number::short;
 
 /// What drove an agent that leads, beside γ.
 fn driven(Drive { peak, peak_s, exceeds_until_s }: Drive, gamma: f64) -> String {
@@ -66,7 +66,7 @@ pub(crate) fn summary(
     if let Some(agreement) = &metrics.agreement {
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
         rows.push(("predicted agreement", predicted.to_owned()));
-        rows.push((reached_words(&metrics.disagreement), list(&reached)));
+        rows.push((if record.is_agreed(metrics) { "reached agreement" } else { "mean, no agreement" }, list(&reached)));
     }
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);
@@ -78,7 +78,7 @@ pub(crate) fn summary(
     if !metrics.limits_reached.is_empty() {
         rows.push((limits_words(&metrics.limits_reached), format!("{}, see the report", metrics.limits_reached.len())));
     }
-    rows.extend(watched(setup, metrics, outcome.statistics.clipped));
+    rows.extend(watched(record, metrics, outcome.statistics.clipped));
     if let Some(gap) = record.digital.as_ref().and_then(|cost| cost.largest_gap) {
         let unit = unit(setup, gap.agent, Signal::Position, gap.axis);
         let agent = agent_name(setup, gap.agent);
@@ -133,11 +133,14 @@ fn limits_words(limits: &[LimitReached]) -> &'static str {
 }
 
 /// The sampling margin along the run, and the commands that limits changed.
-fn watched(setup: &Setup, metrics: &Metrics, clipped: Option<ClippedSamples>) -> Vec<(&'static str, String)> {
+fn watched(record: &RunRecord<'_>, metrics: &Metrics, clipped: Option<ClippedSamples>) -> Vec<(&'static str, String)> {
+    let (setup, recording) = (record.setup, &record.outcome.recording);
     let mut rows = Vec::new();
     if let Some(WatchedMargin { agent, t_s, sigma }) = metrics.watched.and_then(|watched| watched.sampling_margin) {
         let agent = agent_name(setup, agent);
-        rows.push(("sampling margin", format!("σ = {} at most, {agent} at {} s", short(sigma), instant(t_s))));
+        let of = metrics.watched.and_then(|watched| watched.rows_words(recording));
+        let of = of.map_or_else(String::new, |rows| format!(" ({rows})"));
+        rows.push(("sampling margin", format!("σ = {} at most{of}, {agent} at {} s", short(sigma), instant(t_s))));
     }
     rows.extend(clipped.and_then(|clipped| clipped_words(setup, clipped)).map(|words| ("clipped", words)));
     rows
@@ -189,19 +192,6 @@ fn injected(setup: &Setup, all: &[Injected]) -> Vec<(&'static str, String)> {
 /// Of the largest term and of V, what is not accounted for is said above this share.
 const UNEXPLAINED: f64 = 1e-3;
 
-/// Three digits, with a power of ten where the number is very small or large.
-fn short(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 {
-        "0".into()
-    } else if (0.01..1e5).contains(&size) {
-        let places = (2.0 - size.log10().floor()).max(0.0) as usize;
-        format!("{value:.places$}")
-    } else {
-        with_power(&format!("{value:.2e}"))
-    }
-}
-
 fn verdict(record: &RunRecord<'_>) -> String {
     let report = record.verdicts;
     [vec![format!("{}: {}", report.theorem, report.worst().words())], record.failures()].concat().join("; ")
@@ -213,11 +203,6 @@ fn final_gap(setup: &Setup) -> &'static str {
         Gap::Disagreement => "final disagreement",
         Gap::Error => "final error",
     }
-}
-
-/// What the mean of the last positions is: where all agree, or where they do not.
-fn reached_words(disagreement: &Disagreement) -> &'static str {
-    if disagreement.is_agreement() { "reached agreement" } else { "mean, no agreement" }
 }
 
 fn disagreement(setup: &Setup, metrics: &Metrics) -> String {

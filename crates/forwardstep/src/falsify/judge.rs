@@ -17,6 +17,8 @@ use forwardstep::io::scenario::{Inputs, Scenario, read_scenario};
 use forwardstep::sim::reference::PureIntegral;
 use forwardstep::sim::{Ending, Method, Outcome, Setup, simulate};
 
+use crate::number::short;
+
 use super::case::Case;
 
 /// Doublings of the horizon at most.
@@ -81,27 +83,37 @@ impl std::fmt::Display for Failure {
             Failure::Grew { part, t_s } => {
                 write!(
                     f,
-                    "without tracking errors the spread of the cascade grew by {part:.2e} of itself until t = {t_s} s"
+                    "without tracking errors the spread of the cascade grew by {} of itself until t = {t_s} s",
+                    short(*part)
                 )
             }
             Failure::LeftMore { left, guaranteed, t_s } => {
                 write!(
                     f,
-                    "without tracking errors {left:.3e} of the spread of the cascade is left at t = {t_s} s, guaranteed is {guaranteed:.3e}"
+                    "without tracking errors {} of the spread of the cascade is left at t = {t_s} s, guaranteed is {}",
+                    short(*left),
+                    short(*guaranteed)
                 )
             }
             Failure::Unbalanced { relative, t_s } => {
-                write!(f, "V + ∫ dissipation differs from V(0) by {relative:.2e} of it at t = {t_s} s")
+                write!(f, "V + ∫ dissipation differs from V(0) by {} of it at t = {t_s} s", short(*relative))
             }
             Failure::BrokeDown(why) => write!(f, "all hypotheses hold, and the run broke down: {why}"),
             Failure::Rose { most, last } => {
                 write!(
                     f,
-                    "all hypotheses hold, and the error over 16 times the horizon is {last:.3e}, above {most:.3e} over shorter ones"
+                    "all hypotheses hold, and the error over 16 times the horizon is {}, above {} over shorter ones",
+                    short(*last),
+                    short(*most)
                 )
             }
             Failure::Elsewhere { away, disagreement } => {
-                write!(f, "they agree to {disagreement:.3e}, {away:.3e} from the value that is predicted for certain")
+                write!(
+                    f,
+                    "they agree to {}, {} from the value that is predicted for certain",
+                    short(*disagreement),
+                    short(*away)
+                )
             }
         }
     }

@@ -86,7 +86,7 @@ fn val_a_row_of_the_sampling_table_is_what_runs_say() {
     assert_eq!(printed.lines().last().unwrap(), format!("| {} |", cells.join(" | ")));
     let in_words = said(&["theorem-2", "--late", "0.9", "--peak-error", "2.5", "--disagreement", "0.2"]);
     assert!(
-        in_words.contains("\n  rule       11.7 ms: ") && in_words.contains("|s| ≤ 2.500, and at most 2.00e-1 "),
+        in_words.contains("\n  rule       11.7 ms: ") && in_words.contains("|s| ≤ 2.500, and at most 0.200 "),
         "{in_words}"
     );
     // What no period can do.

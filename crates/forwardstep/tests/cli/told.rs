@@ -282,7 +282,7 @@ fn regress_thrusts_rotors_and_wheels_have_peaks() {
         let page = fs::read_to_string(folder.path().join(scenario).join("report.html")).unwrap();
         let (_, loads) = page.split_once("Peaks of thrusts and wheels").unwrap();
         assert!(
-            loads.contains(&format!("<th>{cell}</th>")) && !page.contains("No torques or forces were"),
+            loads.contains(&format!("<th scope=\"col\">{cell}</th>")) && !page.contains("No torques or forces were"),
             "{scenario}"
         );
         // Of rotors and wheels limits are known, so that their share is said.
@@ -290,7 +290,7 @@ fn regress_thrusts_rotors_and_wheels_have_peaks() {
         assert_eq!(loads.contains(" %</span>"), scenario != "thrust-continuous", "{loads}");
         if scenario == "formation" {
             // Four, and the largest of a rotor beside the 8 N that it has.
-            assert_eq!(loads.matches("<th><span class=\"dot").count(), 4, "{loads}");
+            assert_eq!(loads.matches("<th scope=\"row\"><span class=\"dot").count(), 4, "{loads}");
             assert!(loads.contains(">6.951</span>") && loads.contains(">87 %</span>"), "{loads}");
         }
     }

@@ -96,7 +96,7 @@ const heardAt = (time, pace = 0, chosen = null) => {
 };
 
 const someNames = (list) => (list.length > 4 ? `${list.slice(0, 3).join(", ")} and ${list.length - 3} more` : list.join(", "));
-const ageWords = ([low, high]) => (low === high ? `${number(low, 3)} s` : `between ${number(low, 3)} and ${number(high, 3)} s`);
+const ageWords = ([low, high]) => (low === high ? `${number(low, 3)} s` : `between ${number(low, 3)} s and ${number(high, 3)} s`);
 const graphWords = ({ graph, time, edges: drawn }) => {
   if (!scene.graphs.some((g) => g.length > 0)) return vertices > 1 ? "No agent hears another." : "One agent alone.";
   if (graph === null) return `Unknown: the graph changes very often, and is not drawn after ${number(drawnUntil)} s.`;

@@ -77,6 +77,8 @@ const key = (series, plot) => {
   for (const s of named.slice(0, 24)) {
     const line = element("i");
     line.style.background = s.dash?.length ? `repeating-linear-gradient(90deg, ${s.colour} 0 5px, transparent 5px 8px)` : s.colour;
+    // A thinner curve of the same colour is told apart by that.
+    if (s.width != null) line.style.height = `${s.width}px`;
     list.append(element("span", {}, line, s.label));
   }
   if (named.length > 24) list.append(element("span", { textContent: `and ${named.length - 24} more` }));

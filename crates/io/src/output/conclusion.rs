@@ -107,7 +107,12 @@ struct End {
     led: Option<[(f64, usize, usize); 2]>,
     /// The largest speed of any agent on an axis with the same unit, where it is recorded and agents should come to rest.
     speed: Option<f64>,
+    /// Whether that is a good part of the largest it ever was.
+    goes_on: bool,
 }
+
+/// What is slower than this part of the largest speed comes to rest.
+const GOES_ON: f64 = 0.1;
 
 impl End {
     fn of(table: &Table<'_>, series: &DisagreementSeries) -> Option<End> {
@@ -140,9 +145,12 @@ impl End {
             |agent: &usize| (0..series.per_axis.len()).filter(|axis| unit_of(*agent, *axis) == own).collect::<Vec<_>>();
         let speeds = agents.filter(|_| !travels).flat_map(|agent| {
             let axes = alike(&agent).into_iter();
-            axes.filter_map(move |axis| table.column(agent, Signal::Velocity, axis).and_then(last_of))
+            axes.filter_map(move |axis| table.column(agent, Signal::Velocity, axis))
         });
-        let speed = speeds.map(f64::abs).reduce(greater);
+        let speeds: Vec<&[f64]> = speeds.collect();
+        let speed = speeds.iter().filter_map(|values| last_of(values)).map(f64::abs).reduce(greater);
+        let fastest = speeds.iter().flat_map(|values| values.iter()).copied().map(f64::abs).fold(0.0, f64::max);
+        let goes_on = speed.is_some_and(|speed| speed > GOES_ON * fastest);
         let errors = |of: &dyn Fn(usize) -> bool| {
             let all = (0..table.agents()).filter(|agent| of(*agent)).flat_map(|agent| {
                 let column = move |axis| table.column(agent, Signal::Error, axis).and_then(last_of);
@@ -155,7 +163,7 @@ impl End {
             .leading_agent()
             .filter(|_| kind == Gap::Error)
             .and_then(|leader| Some([errors(&|agent| agent == leader)?, errors(&|agent| agent != leader)?]));
-        Some(End { kind, axis, agents: agents_named, gap, led, speed })
+        Some(End { kind, axis, agents: agents_named, gap, led, speed, goes_on })
     }
 
     /// What became of a gap before a run broke down.
@@ -177,7 +185,7 @@ impl End {
     }
 
     fn sentence(&self, setup: &Setup, arrival: Arrival, trend: Trend) -> String {
-        let End { kind, axis, agents, gap, led: errors, speed } = self;
+        let End { kind, axis, agents, gap, led: errors, speed, goes_on } = self;
         let first = agents.first().copied().unwrap_or(0);
         let size = sized(*gap, &gap_unit_on(setup, first, *axis));
         let names: Vec<String> = agents.iter().map(|agent| agent_name(setup, *agent)).collect();
@@ -200,9 +208,19 @@ impl End {
             },
             (Gap::Error, false) => ("on target", format!("{size} from the target")),
         };
+        // Who agrees may run away with all others.
+        let together = match speed {
+            Some(speed) if *goes_on && *kind == Gap::Disagreement => {
+                format!(
+                    ", all together still moving at {}",
+                    sized(*speed, &unit(setup, first, Signal::Velocity, *axis))
+                )
+            }
+            Some(_) | None => String::new(),
+        };
         match arrival {
-            Arrival::Vanished => return format!("{done}: {so_far} at most"),
-            Arrival::WithinGoal => return format!("{done} as far as the goal asks: {so_far} at most"),
+            Arrival::Vanished => return format!("{done}: {so_far} at most{together}"),
+            Arrival::WithinGoal => return format!("{done} as far as the goal asks: {so_far} at most{together}"),
             Arrival::Passing | Arrival::Apart => {}
         }
         let still = match speed {
@@ -260,9 +278,9 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
             advice.push(if passes {
                 "run longer, and record more often: how long a gap takes that swings through zero cannot be told from its end".into()
             } else if slows {
-                format!("run longer: it comes closer more and more slowly, so `time.end_s = {end_s}` at least")
+                format!("run longer: it comes closer more and more slowly; try `time.end_s = {end_s}`")
             } else if !steadily {
-                format!("run longer: it comes closer unevenly, so `time.end_s = {end_s}` at least")
+                format!("run longer: it comes closer unevenly; try `time.end_s = {end_s}`")
             } else {
                 format!("run longer: at this rate `time.end_s = {end_s}` would be about enough")
             });

@@ -52,7 +52,7 @@ impl Grid {
         let rows: usize = rows_t_s.len();
         let available = budget.saturating_sub(3 * breaks.len()).max(12);
         let decimated = rows > available;
-        let progress = if decimated { progress(rows, signals) } else { Vec::new() };
+        let progress = if decimated { progress(rows, signals, Spent::OnChanges) } else { Vec::new() };
         let share = 3.0 / available as f64;
         let bucket_end = |start: usize| match progress.get(start) {
             Some(from) => progress.partition_point(|share_so_far| *share_so_far < from + share).max(start + 1),
@@ -133,12 +133,13 @@ impl Grid {
 /// Parts that are tried at most for every row that is to be taken.
 const FINEST: usize = 8;
 
-/// At most `most` rows, the first and the last among them, taken as a [`Grid`] takes its points where these signals change.
+/// At most `most` rows, the first and the last among them, taken as a [`Grid`] takes its points where these signals change, and where they bend:
+/// straight lines between these rows are drawn as paths.
 pub(crate) fn busy_rows<'a>(rows: usize, most: usize, signals: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     if rows <= most {
         return (0..rows).collect();
     }
-    let progress = progress(rows, signals);
+    let progress = progress(rows, signals, Spent::OnBendsToo);
     let last = progress.last().copied().unwrap_or(1.0);
     let rows_of = |parts: usize| {
         let row = |k: usize| match k == parts {
@@ -162,29 +163,45 @@ pub(crate) fn busy_rows<'a>(rows: usize, most: usize, signals: impl Iterator<Ite
     picks
 }
 
-/// The part of all points that is spent before each row: rows count alike, and so does what signals change by, each as a part of all that it does.
-fn progress<'a>(rows: usize, signals: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
-    let mut changed = vec![0.0; rows];
-    for values in signals {
-        let steps = || {
-            values
-                .windows(2)
-                .map(|pair| (pair[1] - pair[0]).abs())
-                .map(|step| if step.is_finite() { step } else { 0.0 })
-        };
-        let all: f64 = steps().sum();
+/// What points are spent on, beside each row alike.
+#[derive(Clone, Copy, PartialEq)]
+enum Spent {
+    /// By how much signals change there, each as a part of all that it does.
+    OnChanges,
+    /// And by how much these changes change.
+    OnBendsToo,
+}
+
+/// The part of all points that is spent before each row.
+fn progress<'a>(rows: usize, signals: impl Iterator<Item = &'a [f64]>, spent: Spent) -> Vec<f64> {
+    let add = |shares: &mut [f64], steps: &mut dyn Iterator<Item = f64>| {
+        let steps: Vec<f64> = steps.map(|step| if step.is_finite() { step.abs() } else { 0.0 }).collect();
+        let all: f64 = steps.iter().sum();
         if all > 0.0 && all.is_finite() {
-            changed.iter_mut().skip(1).zip(steps()).for_each(|(changed, step)| *changed += step / all);
+            shares.iter_mut().zip(steps).for_each(|(share, step)| *share += step / all);
+        }
+    };
+    let [mut changed, mut bent] = [(); 2].map(|()| vec![0.0; rows]);
+    for values in signals {
+        add(changed.get_mut(1..).unwrap_or_default(), &mut values.windows(2).map(|two| two[1] - two[0]));
+        if spent == Spent::OnBendsToo {
+            let bends = values.windows(3).map(|three| three[2] - 2.0 * three[1] + three[0]);
+            add(bent.get_mut(2..).unwrap_or_default(), &mut { bends });
         }
     }
-    let (all, even) = (changed.iter().sum::<f64>(), 1.0 / rows as f64);
+    let parts: Vec<Vec<f64>> =
+        [vec![1.0; rows], changed, bent].into_iter().filter(|part| part.iter().sum::<f64>() > 0.0).collect();
+    let all: Vec<f64> = parts.iter().map(|part| part.iter().sum()).collect();
+    let shares =
+        |row: usize| parts.iter().zip(&all).map(|(part, all)| part[row] / all).sum::<f64>() / parts.len() as f64;
     let mut so_far = 0.0;
-    let before = |changed: &f64| {
-        let before = so_far;
-        so_far += if all > 0.0 { 0.5 * (even + changed / all) } else { even };
-        before
-    };
-    changed.iter().map(before).collect()
+    (0..rows)
+        .map(|row| {
+            let before = so_far;
+            so_far += shares(row);
+            before
+        })
+        .collect()
 }
 
 /// Values at times that rise, on straight lines between those that were kept, of which the first and the last go on.

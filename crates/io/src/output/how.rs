@@ -1,7 +1,8 @@
 //! How a run ended, in `summary.json`: written, and read back.
 
-use forwardstep_sim::recording::{Breakdown, BreakdownCause, Column, Ending, GainRates, Recording, Stiffness};
+use forwardstep_sim::recording::{Breakdown, BreakdownCause, Ending, GainRates, Recording, Stiffness};
 use forwardstep_sim::setup::Setup;
+use forwardstep_sim::state_entries;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -193,9 +194,15 @@ impl How {
             (EndingKind::CutOff, _) => Ending::CutOff { t_s },
             (EndingKind::BrokeDown, None) => return None,
             (EndingKind::BrokeDown, Some(BrokenSignal { agent, column, cause })) => {
-                let is_it =
-                    |c: &&Column| c.agent == *agent && names::column_name(setup, c.agent, c.signal, c.axis) == *column;
-                let broken = recording.columns.iter().find(is_it)?;
+                let is_it = |signal, axis| names::column_name(setup, *agent, signal, axis) == *column;
+                let recorded = recording.columns.iter().find(|c| c.agent == *agent && is_it(c.signal, c.axis));
+                let (signal, axis) = match recorded {
+                    Some(column) => (column.signal, column.axis),
+                    // What a law from outside does not show is in no table.
+                    None => (state_entries(setup).ok()?.into_iter())
+                        .find(|(of, signal, axis)| of == agent && is_it(*signal, *axis))
+                        .map(|(_, signal, axis)| (signal, axis))?,
+                };
                 let cause = match *cause {
                     Cause::NotFinite => BreakdownCause::NotFinite,
                     Cause::StepUnderFloor { step_s, stiffness } => {
@@ -209,12 +216,11 @@ impl How {
                     Cause::Vanished { value, floor } => BreakdownCause::Vanished { value, floor },
                     Cause::PositionLimit { value, limits } => {
                         // JSON has no infinity. The table has, and ends with the row that broke the run.
-                        let last = broken.values.last().copied().unwrap_or(f64::NAN);
+                        let last = recorded.and_then(|column| column.values.last()).copied().unwrap_or(f64::NAN);
                         BreakdownCause::PositionLimit { value: if value.is_finite() { value } else { last }, limits }
                     }
                 };
-                let Column { agent, signal, axis, .. } = *broken;
-                Ending::BrokeDown(Breakdown { t_s, agent, signal, axis, cause })
+                Ending::BrokeDown(Breakdown { t_s, agent: *agent, signal, axis, cause })
             }
         })
     }

@@ -15,7 +15,7 @@ use super::number;
 use super::practical::Watched;
 use super::table::Table;
 use crate::scenario::Goal;
-use crate::wording::about;
+use crate::wording::{about, count};
 
 /// V(0) is not taken to be smaller than this, in J, when the residual of the balance is put in relation to it: an agent that
 /// starts without any error has V(0) = 0.
@@ -408,10 +408,11 @@ pub fn coarse_rows(setup: &Setup, outcome: &Outcome) -> Option<String> {
     let (rows, steps) = (outcome.recording.t_s.len(), outcome.statistics.steps);
     let is_coarse = setup.control.is_none() && steps as f64 > MANY_STEPS * rows.max(1) as f64;
     let mean_s = outcome.recording.t_s.last()? / rows.saturating_sub(1).max(1) as f64;
-    let what = "peaks and limits between rows are not seen";
+    let what = "peaks and limits between rows are not seen, and times of settling are between rows";
     is_coarse.then(|| {
         format!(
-            "{rows} rows, {} s apart on the average, beside {steps} steps: {what}; record more often",
+            "{}, {} s apart on the average, beside {steps} steps: {what}; record more often",
+            count(rows, "row"),
             about(mean_s)
         )
     })

@@ -77,6 +77,9 @@ pub struct Watched {
     pub tracking_power: Option<WatchedPower>,
     /// How many states were looked at for the first two.
     pub states: usize,
+    /// Rows that these are of; zero in files of earlier versions, which do not say.
+    #[serde(default)]
+    pub rows: usize,
 }
 
 /// How large s was, as power.
@@ -118,9 +121,15 @@ pub struct WatchedLoad {
 }
 
 impl Watched {
+    /// At how many of the rows of a run this was looked at, in words; nothing where it was at all of them.
+    pub fn rows_words(&self, recording: &Recording) -> Option<String> {
+        let all = recording.t_s.len();
+        (self.rows > 0 && self.rows < all).then(|| format!("{} of {all} rows", self.rows))
+    }
+
     /// Looks at a recording; `None` where there is nothing to be watched.
     pub fn of(setup: &Setup, recording: &Recording) -> Option<Watched> {
-        let Along { margin, load, power, states } = along(setup, recording);
+        let Along { margin, load, power, states, rows } = along(setup, recording);
         let tracking_power = power
             .map(|PowerReached { mean_w, bound }| WatchedPower { mean_w, bound_w: bound.map(|bound| bound.mean_w) });
         let sampling_margin = margin.map(|MarginReached { agent, t_s, sigma }| WatchedMargin { agent, t_s, sigma });
@@ -131,7 +140,7 @@ impl Watched {
             torque: load.torque,
             limit: load.limit,
         });
-        let found = Watched { sampling_margin, static_load, tracking_power, states };
+        let found = Watched { sampling_margin, static_load, tracking_power, states, rows };
         (sampling_margin.is_some() || static_load.is_some() || tracking_power.is_some()).then_some(found)
     }
 }

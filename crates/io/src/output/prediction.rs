@@ -191,6 +191,11 @@ impl Predictions {
         }
     }
 
+    /// The course where there is something of it to draw: on a logarithmic axis there is no zero.
+    pub(crate) fn drawn(&self) -> Option<&CourseFound> {
+        self.course().filter(|course| !course.stays())
+    }
+
     /// Whether it says no more than that one agent alone has none to agree with.
     pub fn is_of_one_alone(&self, setup: &Setup) -> bool {
         setup.agents.len() < 2 && self.course().is_none()
@@ -202,6 +207,12 @@ impl Predictions {
         let mut sentences = Vec::new();
         match &self.course {
             PredictedCourse::NoneSince(reason) => sentences.push(format!("course of agreement: none, since {reason}")),
+            PredictedCourse::Found(course) if course.stays() => {
+                let moved = if is_pushed(setup) { "; what pushes make of it the run shows" } else { "" };
+                sentences.push(format!("all agree at the start, and with s ≡ 0 they stay so{moved}"));
+                sentences.extend(course.value_sentence(setup));
+                sentences.extend(course.torque_sentence(setup));
+            }
             PredictedCourse::Found(course) => {
                 let reached = if course.reached { "agreement is reached" } else { "agreement is not reached" };
                 let delayed = course.delay(setup);
@@ -285,6 +296,11 @@ impl CourseFound {
         }
     }
 
+    /// Whether all agree from the start on as long as everybody follows.
+    pub(crate) fn stays(&self) -> bool {
+        self.disagreement.iter().all(|apart| *apart == 0.0)
+    }
+
     /// What keeps a run from settling as s ≡ 0 does, to stand behind the time.
     fn delay(&self, setup: &Setup) -> String {
         let energy = match self.start_energy_j {
@@ -321,9 +337,11 @@ impl CourseFound {
     /// The middle of the interval that the value agreed upon lies in, if there is one.
     fn value_sentence(&self, setup: &Setup) -> Option<String> {
         let within = self.within.as_ref().filter(|_| self.reached)?;
-        let middles: Vec<String> =
-            within.iter().take(MOST_AXES).map(|[low, high]| number_words(middle(*low, *high))).collect();
-        let widest = within.iter().map(|[low, high]| 0.5 * (high - low)).fold(0.0, f64::max);
+        // About zero where that is inside.
+        let away = |[low, high]: &[f64; 2]| f64::max(high - middle(*low, *high), middle(*low, *high) - low);
+        let widest = within.iter().map(away).fold(0.0, f64::max);
+        let shown = |[low, high]: &[f64; 2]| with_digits_of(middle(*low, *high), widest);
+        let middles: Vec<String> = within.iter().take(MOST_AXES).map(shown).collect();
         let more = if within.len() > MOST_AXES { ", …" } else { "" };
         // (58) ends where ṡ is zero, not s.
         let leaves_some = |law: &ThrustLaw| law.design.estimate_start().is_some();
@@ -334,7 +352,8 @@ impl CourseFound {
             (false, false) => "",
         };
         let what = names::value_words(setup).to_lowercase();
-        Some(format!("{what} agreed upon ({}{more}), to ± {}{moved}", middles.join(", "), number_words(widest)))
+        let to = if widest > 0.0 { format!(", to ± {}", number_words(widest)) } else { String::new() };
+        Some(format!("{what} agreed upon ({}{more}){to}{moved}", middles.join(", ")))
     }
 
     fn torque_sentence(&self, setup: &Setup) -> Option<String> {
@@ -396,7 +415,7 @@ impl CourseFound {
     }
 }
 
-fn is_pushed(setup: &Setup) -> bool {
+pub(super) fn is_pushed(setup: &Setup) -> bool {
     setup.agents.iter().any(|agent| !agent.pushes.is_empty())
 }
 
@@ -412,6 +431,15 @@ fn start_of_estimates(off: f64) -> String {
 /// A number with three decimal places, where these are digits that say something and not too many.
 fn three_places(x: f64) -> String {
     if x == 0.0 || (0.01..1e6).contains(&x) { format!("{x:.3}") } else { number_words(x) }
+}
+
+/// `value` with all digits down to the first of its error.
+pub(super) fn with_digits_of(value: f64, error: f64) -> String {
+    let places = -error.log10().floor();
+    let written = format!("{value:.*}", places.clamp(0.0, 15.0) as usize);
+    // What is rounded to nothing, or has an error of more than ten, has the digits of any other number.
+    let says = (0.0..=15.0).contains(&places) && written.parse::<f64>().is_ok_and(|written| written != 0.0);
+    if says { written.replace('-', "−") } else { number_words(value) }
 }
 
 /// The middle of an interval; what cannot be told from zero is zero.

@@ -1,7 +1,7 @@
 //! Everything that is known about a finished run.
 
 use forwardstep_check::hypothesis::Subject;
-use forwardstep_check::{Answer, Hypothesis, Id, Report};
+use forwardstep_check::{Answer, Footing, Ground, Hypothesis, Id, Report};
 use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome, Signal};
 use forwardstep_sim::setup::Setup;
 
@@ -66,6 +66,13 @@ impl RunRecord<'_> {
         Gap::keeps_offsets(self.setup)
     }
 
+    /// Whether all agreed: what is left is at most 1 % of the largest disagreement, and what the goal asks for is met.
+    pub fn is_agreed(&self, metrics: &Metrics) -> bool {
+        let missed =
+            self.goal.is_some_and(|outcome| matches!(outcome.goal, Goal::DisagreementBelow(_)) && !outcome.met);
+        metrics.disagreement.is_agreement() && !missed
+    }
+
     /// Whether somebody ended the run before its horizon, so that nothing is known of what would have come.
     pub fn is_undecided(&self) -> bool {
         matches!(self.outcome.ending, Ending::Interrupted { .. } | Ending::CutOff { .. })
@@ -89,6 +96,19 @@ impl RunRecord<'_> {
         };
         let vanished = matches!(breakdown.cause, BreakdownCause::Vanished { .. });
         (vanished && is_cause && is_whose).then(|| format!("it failed, at t = {} s", number(breakdown.t_s)))
+    }
+
+    /// What the derivation rests on; what failed in the run is among what it lacks.
+    pub(crate) fn footing(&self) -> Footing {
+        let mut footing = Footing::of(self.setup, self.verdicts);
+        for hypothesis in &self.verdicts.hypotheses {
+            if let Some(words) = self.failed(hypothesis) {
+                footing.breaks.retain(|ground| ground.id != hypothesis.id);
+                let words = format!("{}; in this run {words}", hypothesis.requires());
+                footing.lacks.push(Ground { id: hypothesis.id, words });
+            }
+        }
+        footing
     }
 
     /// Of the hypotheses that are watched during the run those that failed in it, with when.

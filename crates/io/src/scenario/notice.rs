@@ -347,7 +347,7 @@ impl fmt::Display for Notice {
             Notice::StiffDamping { agent, per_s, steps } => write!(
                 f,
                 "the gain K is stiff: at the start of {agent} s decays at {} per second, and a run in continuous time takes \
-                 about {} steps to follow that; let K be smaller",
+                 about {} steps to follow that; let K be smaller, or the run shorter",
                 about(*per_s),
                 about(*steps)
             ),

@@ -62,5 +62,5 @@ pub use probe_reference::probe_reference;
 pub use recipes::{recipe, recipes};
 pub use references::reference_dynamics;
 pub use sampled_map::{Periods, SampledLoop, sampled_loop};
-pub use valid::validate;
+pub use valid::{check_shape, validate};
 pub use velocity_quantity::VelocityQuantity;

@@ -12,19 +12,43 @@ use crate::reference::ReferenceInterface;
 use crate::setup::{AgentSetup, AxisUnit, Exchange, Setup};
 use crate::system::{LawWords, PositionKind};
 
-/// Everything that does not need a robot's kernels.
+/// Whether the parts of a setup fit together: as many vertices as agents, links between those that there are, as many axes as the start has
+/// positions. What asks nothing of a setup but this has an answer, or a typed reason why there is none, whatever the numbers in it are.
 ///
 /// # Errors
-/// [`SetupError`] when the setup has no meaning.
-pub fn validate(setup: &Setup) -> Result<(), SetupError> {
-    setup.time.check()?;
-    setup.network.validate(setup.time.end_s)?;
+/// [`SetupError`] for the first that does not.
+pub fn check_shape(setup: &Setup) -> Result<(), SetupError> {
+    setup.network.check_shape()?;
     // A motion is a vertex of its own; an agent that leads is one already.
     let leaders = usize::from(setup.following().is_some_and(|following| following.motion().is_some()));
     if setup.network.agents != setup.agents.len() + leaders {
         let agents = setup.agents.len() + leaders;
         return Err(SetupError::AgentCount { network: setup.network.agents, agents });
     }
+    for (index, agent) in setup.agents.iter().enumerate() {
+        let (axes, velocities) = (agent.robot.axes.len(), agent.robot.velocity_len());
+        if axes == 0 {
+            return Err(SetupError::NoAxes { agent: agent.name.clone() });
+        }
+        let place = |key| Path::from("agents").index(index).key(key);
+        if agent.start.q.len() != axes {
+            length(agent, place("start.position"), axes, agent.start.q.len())?;
+        }
+        if agent.start.dq.len() != velocities {
+            length(agent, place("start.velocity"), velocities, agent.start.dq.len())?;
+        }
+    }
+    Ok(())
+}
+
+/// Everything that does not need a robot's kernels.
+///
+/// # Errors
+/// [`SetupError`] when the setup has no meaning.
+pub fn validate(setup: &Setup) -> Result<(), SetupError> {
+    setup.time.check()?;
+    check_shape(setup)?;
+    setup.network.validate(setup.time.end_s)?;
     setup.solver.check()?;
     setup.control.as_ref().map_or(Ok(()), |control| control.check(setup.time.end_s))?;
     setup.reference.check(setup)?;
@@ -91,9 +115,6 @@ fn check_agent(setup: &Setup, index: usize) -> Result<(), SetupError> {
             first: first.name.clone(),
             first_axes: axes,
         });
-    }
-    if axes == 0 {
-        return Err(SetupError::NoAxes { agent: agent.name.clone() });
     }
     let own = Path::from("agents").index(index);
     if let Some((_, period_s)) = dry_friction(agent) {

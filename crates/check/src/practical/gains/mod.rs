@@ -33,7 +33,7 @@ mod agent;
 mod grid;
 mod responses;
 
-use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup};
+use forwardstep_sim::{AgentSetup, PositionOnlyLaw, Setup, check_shape};
 use thiserror::Error;
 
 use self::agent::Agent;
@@ -132,6 +132,9 @@ impl ReferenceGains {
         if setup.agents.len() < 2 {
             return Err(NoReferenceGains::FewerThanTwoAgents);
         }
+        if check_shape(setup).is_err() {
+            return Err(NoReferenceGains::Unclear);
+        }
         if !network.coupling.is_linear() {
             return Err(NoReferenceGains::Coupling);
         }
@@ -148,8 +151,7 @@ impl ReferenceGains {
             return Err(NoReferenceGains::Timeout);
         }
         let end_s = setup.time.end_s;
-        let valid =
-            network.agents == agents.len() && network.validate(end_s).is_ok() && network.lasts_until(end_s).is_ok();
+        let valid = network.validate(end_s).is_ok() && network.lasts_until(end_s).is_ok();
         if !(valid && end_s > 0.0 && end_s.is_finite()) {
             return Err(NoReferenceGains::Unclear);
         }

@@ -38,7 +38,7 @@ mod place;
 mod trial;
 mod way;
 
-use forwardstep_sim::{AgentSetup, Periods, Setup};
+use forwardstep_sim::{AgentSetup, Periods, Setup, check_setup};
 
 use self::linear::Linear;
 pub(super) use self::network::degree;
@@ -99,6 +99,7 @@ impl WholeLoop {
     /// some adapt under other laws than (6)–(7), or along targets of their own.
     pub fn of(setup: &Setup) -> Option<WholeLoop> {
         setup.control.as_ref()?;
+        check_setup(setup).ok()?;
         let along_targets = |index: usize, agent| !is_lagrangian(agent) || setup.tracks(index);
         let mut agents = setup.agents.iter().enumerate();
         let adapts = agents.any(|(index, agent)| agent.estimates() && along_targets(index, agent));

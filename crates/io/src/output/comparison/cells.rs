@@ -57,6 +57,7 @@ impl ComparedRow {
     pub(super) fn of(group: RowGroup, key: &str, name: &str, cells: Vec<ComparedCell>) -> Self {
         let same = cells.windows(2).all(|pair| pair[0] == pair[1]);
         let mut units: Vec<&str> = cells.iter().filter_map(|cell| cell.unit.as_deref()).collect();
+        units.sort_unstable();
         units.dedup();
         let note = (units.len() > 1).then(|| format!("units differ: {}", units.join(", ")));
         ComparedRow { key: key.into(), group, name: name.into(), same, note, cells }

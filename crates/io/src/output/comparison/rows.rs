@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use forwardstep_check::Answer;
 use forwardstep_check::smoothness::LargestJump;
 use forwardstep_core::signal::superscript;
+use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
 use forwardstep_sim::reference::Desired;
 use toml::Table as Toml;
@@ -79,6 +80,14 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
         Row::of(group, key, name, subjects.iter().map(|subject| cell(subject).unwrap_or_else(|none| none)).collect())
     };
     let Some(first) = subjects.first() else { return Vec::new() };
+    // The same words for all, where they are the same.
+    let shared = |said: fn(&Setup) -> &'static str, else_words: &'static str| {
+        let first = said(first.setup());
+        if subjects.iter().all(|subject| said(subject.setup()) == first) { first } else { else_words }
+    };
+    let input = shared(|setup| names::input_words(setup).0, "input");
+    let (peak, bound) = (format!("peak {input}"), format!("{input} bound"));
+    let agreed_upon = shared(names::value_words, "Value").to_lowercase();
     let alike = |same: fn(&Subject<'_>, &Subject<'_>) -> bool| move |k: usize| same(first, &subjects[k]);
     use RowGroup::{Observed, Predicted, Promised, Simulated};
     let mut rows = vec![
@@ -112,7 +121,7 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
                 s.guarantee()?.repeat.ok_or_else(|| Cell::none("what is left is not known to fall again and again"))?;
             Ok(Cell::number(repeat.left.ln() / repeat.over_s, "1/s"))
         }),
-        row(Predicted, "predicted_value", "value", |s| {
+        row(Predicted, "predicted_value", &agreed_upon, |s| {
             let course = s.course()?;
             if !course.reached {
                 return Err(Cell::none("agreement is not predicted on the horizon"));
@@ -127,12 +136,12 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
             PredictedRate::Period { rate_per_s, .. } => Ok(Cell::number(*rate_per_s, "1/s")),
             PredictedRate::NoneSince(reason) => Err(Cell::none(reason.as_str())),
         }),
-        row(Predicted, "predicted_peak_torque", "peak torque", |s| {
+        row(Predicted, "predicted_peak_torque", &peak, |s| {
             let peak =
                 s.course()?.peak_torque().ok_or_else(|| Cell::none("torques are predicted of robots under (6)–(7)"))?;
             Ok(Cell::number(peak.value.abs(), &torque_unit(s, peak.agent, peak.axis)))
         }),
-        row(Predicted, "torque_bound", "torque bound", |s| {
+        row(Predicted, "torque_bound", &bound, |s| {
             let bounds = s.course()?.peak_torques.iter().filter_map(|peak| Some((peak.at_most?, peak)));
             let (at_most, peak) = bounds
                 .reduce(|a, b| if b.0 > a.0 { b } else { a })
@@ -151,8 +160,8 @@ pub(super) fn all(subjects: &[Subject<'_>]) -> Vec<Row> {
                 .map(|t_s| Cell::number(t_s, "s"))
                 .ok_or_else(|| Cell::none("not before the end"))
         }),
-        row(Observed, "value", "value", value),
-        row(Observed, "peak_torque", "peak torque", |s| {
+        row(Observed, "value", &agreed_upon, value),
+        row(Observed, "peak_torque", &peak, |s| {
             let peaks = s.metrics.peak_torques.iter();
             let peak = peaks.reduce(|a, b| if b.value.abs() > a.value.abs() { b } else { a });
             let peak = peak.ok_or_else(|| Cell::none("no torque is recorded"))?;
@@ -278,7 +287,7 @@ fn value(s: &Subject<'_>) -> Result<Cell, Cell> {
         return Err(Cell::none(NOT_AGREED_UPON));
     }
     let means = s.metrics.final_means.as_ref().ok_or_else(|| Cell::none("agents cannot be compared"))?;
-    if !s.metrics.disagreement.is_agreement() {
+    if !s.run.record.is_agreed(&s.metrics) {
         return Err(Cell::none("no agreement by the end"));
     }
     Ok(Cell::entries(means, &s.gap_unit()))

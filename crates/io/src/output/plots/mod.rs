@@ -207,7 +207,7 @@ impl<'a> Plots<'a> {
             let colour = |axis| palette::ramp(axis, axes.len(), Ground::Light);
             let mut lines: Vec<_> =
                 axes.iter().enumerate().map(|(axis, values)| self.line(&grid, values, false, colour(axis))).collect();
-            if let Some(course) = self.record.prediction.as_ref().and_then(|prediction| prediction.course()) {
+            if let Some(course) = self.record.prediction.as_ref().and_then(|prediction| prediction.drawn()) {
                 let points: Vec<_> = course.t_s.iter().copied().zip(course.disagreement.iter().copied()).collect();
                 lines.extend(dashes(&points, INK));
             }
@@ -218,7 +218,7 @@ impl<'a> Plots<'a> {
                     .collect();
                 legend.push(("largest".into(), INK));
             }
-            if self.record.prediction.as_ref().is_some_and(|prediction| prediction.course().is_some()) {
+            if self.record.prediction.as_ref().is_some_and(|prediction| prediction.drawn().is_some()) {
                 legend.push(("predicted, dashed".into(), INK));
             }
             let unit = text::in_unit(&names::gap_unit(self.record.setup));

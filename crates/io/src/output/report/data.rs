@@ -279,7 +279,7 @@ impl Payload {
             predicted: record
                 .prediction
                 .as_ref()
-                .and_then(|prediction| prediction.course())
+                .and_then(|prediction| prediction.drawn())
                 .map(|course| main.add(&course.at(table.t_s), false)),
             per_axis: series.per_axis.iter().map(|axis| main.add(axis, false)).collect(),
         });

@@ -32,12 +32,12 @@ pub(crate) fn injected(record: &RunRecord<'_>) -> Markup {
                 h3 { "Energy put into V by each cause, in J or the unit of V" " " span.by { (Source::Derived.words()) } }
                 table.numbers {
                     thead { tr {
-                        th {} th { "V at the start" }
-                        @for cause in &causes { th title=(cause.words()) { (cause.name()) } }
-                        th { "V at the end" } th { "First beyond the proof" }
+                        th {} th scope="col" { "V at the start" }
+                        @for cause in &causes { th scope="col" title=(cause.words()) { (cause.name()) } }
+                        th scope="col" { "V at the end" } th scope="col" { "First beyond the proof" }
                     } }
                     tbody { @for own in record.injected.iter().take(MOST_ROWS) { tr {
-                        th { (agent(own)) } td { (number(own.start_j)) }
+                        th scope="row" { (agent(own)) } td { (number(own.start_j)) }
                         @for cause in &causes { td { (number(own.term_j(*cause))) } }
                         td { (number(own.end_j)) } td { (first_of(own)) }
                     } } }

@@ -24,11 +24,11 @@ pub(crate) fn interfaces(setup: &Setup) -> Markup {
             h2 { "Measured and transmitted" }
             div.card.scroll {
                 table.facts {
-                    thead { tr { th { "Agents" } th { "Measured" } th { "Transmitted" } th { "On one edge" } } }
+                    thead { tr { th scope="col" { "Agents" } th scope="col" { "Measured" } th scope="col" { "Transmitted" } th scope="col" { "On one edge" } } }
                     tbody {
                         @for group in groups(setup) {
                             tr {
-                                th { (names(&group.agents)) }
+                                th scope="row" { (names(&group.agents)) }
                                 td data-what="Measured" { (setup.measures_for(group.measures).join(", ")) }
                                 td data-what="Transmitted" { @if transmits.is_empty() { "nothing" } @else { (transmits.join(", ")) } }
                                 td data-what="On one edge" { (traffic(setup, transmits.len() * group.axes)) }

@@ -26,11 +26,11 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 div.card.scroll {
                     h3 { "Peak " (names::input_words(setup).0) " " span.by { "largest |τ| at recorded rows, the time, and its share of the limit where one is known" } }
                     table.numbers.peaks {
-                        thead { tr { th {} @for axis in 0..most_axes { th { (names::shared_words(setup, axis, names::torque_words)) } } } }
+                        thead { tr { th {} @for axis in 0..most_axes { th scope="col" { (names::shared_words(setup, axis, names::torque_words)) } } } }
                         tbody {
                             @for agent in 0..setup.agents.len().min(MOST_TORQUE_ROWS) {
                                 tr {
-                                    th { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
+                                    th scope="row" { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
                                     @for axis in 0..most_axes {
                                         td { @if let Some(p) = peak(agent, axis) { (torque(setup, p)) } }
                                     }
@@ -45,7 +45,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                 h3 { "Limits" " " span.by { "reported; enforced only where the scenario asks for it" } }
                 @if metrics.limits_reached.is_empty() { p.note { "No known limit was exceeded." } } @else {
                     table.numbers {
-                        thead { tr { th { "Joint" } th { "limit" } th { "value" } th { "worst" } th { "exceeded by" } th { "first at" } th { "of the rows" } th { "enforced" } } }
+                        thead { tr { th scope="col" { "Agent" } th scope="col" { "limit" } th scope="col" { "value" } th scope="col" { "worst" } th scope="col" { "exceeded by" } th scope="col" { "first at" } th scope="col" { "of the rows" } th scope="col" { "enforced" } } }
                         tbody { @for limit in metrics.limits_reached.iter().take(MOST_LIMIT_ROWS) {
                             @let (kind, signal) = match limit.kind {
                                 LimitKind::Position | LimitKind::Unknown => ("position".to_owned(), Signal::Position),
@@ -58,7 +58,7 @@ pub(crate) fn loads(setup: &Setup, metrics: &Metrics) -> Markup {
                             };
                             @let unit = unit_at(setup, signal, limit.agent, limit.axis);
                             tr {
-                                th { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (limit_entry(setup, limit, signal)) }
+                                th scope="row" { span.dot.{ "a" (limit.agent) } {} (names::agent_name(setup, limit.agent)) " · " (limit_entry(setup, limit, signal)) }
                                 td { (kind) }
                                 td { (number(limit.limit)) " " (unit) }
                                 td { (number(limit.worst)) " " (unit) }
@@ -121,11 +121,11 @@ fn beside_axes(setup: &Setup, loads: &[Load]) -> Markup {
         div.card.scroll {
             h3 { "Peaks of thrusts and wheels" " " span.by { "largest magnitude at recorded rows, the time, and its share of the limit where one is known" } }
             table.numbers.peaks {
-                thead { tr { th {} @for words in &columns { th { (words) } } } }
+                thead { tr { th {} @for words in &columns { th scope="col" { (words) } } } }
                 tbody {
                     @for agent in agents.into_iter().take(MOST_TORQUE_ROWS) {
                         tr {
-                            th { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
+                            th scope="row" { span.dot.{ "a" (agent) } {} (names::agent_name(setup, agent)) }
                             @for words in &columns {
                                 td { @if let Some(found) = of(agent, words) { (load(&found.peak, &text::unit(&found.unit(setup)), found.limit)) } }
                             }

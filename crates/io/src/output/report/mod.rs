@@ -22,7 +22,6 @@ mod stage;
 
 use std::time::Duration;
 
-use forwardstep_check::Footing;
 use forwardstep_check::derivation::{Explained, Explanation, Line, Subject, explain};
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::{Ending, Signal};
@@ -121,7 +120,7 @@ pub(crate) fn page(record: &RunRecord<'_>, metrics: &Metrics, again: Option<Dura
                     (signals(record, payload.cascade, absence == Some(Absence::FewerThanTwoAgents), &explained))
                     @if has_network(record) { (network(record, &timeline)) }
                     (interfaces(record.setup))
-                    (explanation_markup(record.setup, &explained, &Footing::of(record.setup, record.verdicts)))
+                    (explanation_markup(record.setup, &explained, &record.footing()))
                     (sections::digital(record))
                     (injected::injected(record))
                     (loads::loads(record.setup, metrics))
@@ -241,7 +240,7 @@ fn signals(record: &RunRecord<'_>, cascade: Option<bool>, is_alone: bool, explai
                     (card("cascade", "Interval of the cascade", &format!("max − min of all ψ, each scaled to be a position at rest{dashed}"), ""))
                 }
                 @if recorded(Signal::Lyapunov) {
-                    @if recorded(Signal::Dissipation) && keeps_balance(record.setup) { (card("balance", "Lyapunov balance", "V + ∫ dissipation = V(0)", "")) }
+                    @if recorded(Signal::Dissipation) && keeps_balance(record.setup) { (card("balance", "Lyapunov balance", sections::balance_letters(record), "")) }
                     @else { (card("balance", "Lyapunov function", "V of each agent", "")) }
                 }
                 @if record.injected_course.is_some() { (card("injected", "V and what was injected", "of all agents together, by cause", "")) }

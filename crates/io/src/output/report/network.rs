@@ -137,7 +137,7 @@ pub(crate) fn links(record: &RunRecord<'_>) -> Markup {
                 div.scroll {
                     table.numbers #packets {
                         thead {
-                            tr { th { "link" } th { "sent" } th { "lost" } th { "late, dropped" } th { "largest age heard" } }
+                            tr { th scope="col" { "link" } th scope="col" { "sent" } th scope="col" { "lost" } th scope="col" { "late, dropped" } th scope="col" { "largest age heard" } }
                         }
                         tbody {
                             @for link in &links {

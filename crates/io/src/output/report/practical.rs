@@ -1,6 +1,7 @@
 //! Practical verdicts beside what was watched: what is said of the loop as it is deployed, not from the paper.
 
 use forwardstep_check::{PracticalAnswer, Source, practical as of_setup};
+use forwardstep_sim::Setup;
 use forwardstep_sim::recording::Signal;
 use maud::{Markup, html};
 
@@ -40,7 +41,7 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                 @let watched = watched(record, metrics);
                 @if !watched.0.is_empty() {
                     div.card {
-                        h3 { "Watched" " " span.by { "at rows of the recording" } }
+                        h3 { "Watched" " " span.by { "at " (rows_of(record, metrics)) " of the recording" } }
                         table.facts { tbody { (watched) } }
                     }
                 }
@@ -56,6 +57,23 @@ fn style(answer: PracticalAnswer) -> (&'static str, &'static str) {
         PracticalAnswer::Marginal => ("fair", "✓"),
         PracticalAnswer::NotShown => ("warn", "?"),
         PracticalAnswer::Inadequate => ("bad", "✗"),
+    }
+}
+
+/// At how many rows was looked.
+fn rows_of(record: &RunRecord<'_>, metrics: &Metrics) -> String {
+    let some = metrics.watched.and_then(|watched| watched.rows_words(&record.outcome.recording));
+    some.unwrap_or_else(|| "rows".to_owned())
+}
+
+/// What a bound of the power takes from the run.
+fn fed_by(setup: &Setup) -> &'static str {
+    let pushed = setup.agents.iter().any(|agent| !agent.pushes.is_empty());
+    match (pushed, setup.control.is_some()) {
+        (true, true) => "the pushes, the start and σ",
+        (true, false) => "the pushes and the start",
+        (false, true) => "the start and σ",
+        (false, false) => "the start",
     }
 }
 
@@ -77,7 +95,7 @@ fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
         @if let Some(WatchedPower { mean_w, bound_w }) = tracking_power {
             (fact("Σ sᵀKs", html! {
                 (number(mean_w)) " W on the average"
-                @if let Some(bound_w) = bound_w { ", at most " (number(bound_w)) " W with the pushes, the start and σ of this run" }
+                @if let Some(bound_w) = bound_w { ", at most " (number(bound_w)) " W with " (fed_by(setup)) " of this run" }
             }))
         }
         @if let Some(words) = record.outcome.statistics.clipped.and_then(|clipped| names::clipped_words(setup, clipped)) {
@@ -87,5 +105,5 @@ fn watched(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
 }
 
 fn fact(name: &str, what: Markup) -> Markup {
-    html! { tr { th { (name) } td { (what) } } }
+    html! { tr { th scope="row" { (name) } td { (what) } } }
 }

@@ -7,7 +7,9 @@ use maud::{Markup, html};
 use super::super::conclusion::LEFT_OVER;
 use super::super::metrics::{Disagreement, Metrics};
 use super::super::names;
-use super::super::prediction::{CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions, is_far};
+use super::super::prediction::{
+    CourseFound, PredictedCourse, PredictedRate, PredictedTorque, Predictions, is_far, is_pushed, with_digits_of,
+};
 use super::super::record::RunRecord;
 use super::super::text::{self, number, prose};
 use super::sections::last_tracking_error;
@@ -17,6 +19,9 @@ const FAR_MORE: f64 = 10.0;
 /// Less of what was at the start is as good as nothing.
 const NOTICED: f64 = 1e-6;
 /// More rows would only repeat themselves.
+/// What is said where something acts from outside.
+const PUSHED: &str =
+    "Pushes act in this run. What they do to the course, to the value agreed upon and to torques is not predicted.";
 const MOST_TORQUES: usize = 24;
 const MOST_AXES: usize = 32;
 
@@ -34,9 +39,9 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     PredictedCourse::NoneSince(reason) => p.note { "The course of agreement is not predicted, since " (prose(reason)) "." },
                     PredictedCourse::Found(course) => {
                         table.numbers {
-                            thead { tr { th {} th { "predicted" } th { "observed" } } }
-                            tbody { @for (name, predicted, observed) in rows(setup, course, metrics) {
-                                tr { th { (name) } td { (text::unbroken(&predicted)) } td { (text::unbroken(&observed)) } }
+                            thead { tr { th {} th scope="col" { "predicted" } th scope="col" { "observed" } } }
+                            tbody { @for (name, predicted, observed) in rows(record, course, metrics) {
+                                tr { th scope="row" { (name) } td { (text::unbroken(&predicted)) } td { (text::unbroken(&observed)) } }
                             } }
                         }
                     }
@@ -60,6 +65,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     p.note { "Guaranteed: " (prose(&sentence)) "." }
                 }
                 @if let Some(sentences) = tracking_error(record, metrics) { p.note { (sentences) } }
+                @if is_pushed(setup) { p.note { (PUSHED) } }
             }
             @if let Some(course) = prediction.course().filter(|course| !course.peak_torques.is_empty()) {
                 (torques(setup, course, metrics))
@@ -68,7 +74,8 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
     }
 }
 
-fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+fn rows(record: &RunRecord<'_>, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+    let setup = record.setup;
     let unit = names::gap_unit(setup);
     let never_apart = metrics.disagreement.initial() == Some(0.0);
     let seconds = |t_s: Option<f64>| match t_s {
@@ -78,7 +85,7 @@ fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, 
     };
     let size = |value: f64| format!("{} {unit}", number(value));
     let (last, observed_reached) = match metrics.disagreement {
-        Disagreement::Measured { last, .. } => (size(last), metrics.disagreement.is_agreement()),
+        Disagreement::Measured { last, .. } => (size(last), record.is_agreed(metrics)),
         Disagreement::Absent(_) => ("–".to_owned(), false),
     };
     let reached = |reached: bool| if reached { "reached" } else { "not reached" }.to_owned();
@@ -95,7 +102,7 @@ fn rows(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, 
             last,
         ),
     ];
-    rows.extend(values(setup, course, metrics));
+    rows.extend(values(record, course, metrics));
     rows
 }
 
@@ -149,10 +156,11 @@ fn is_moved(course: &CourseFound, metrics: &Metrics, apart: f64) -> bool {
 }
 
 /// The value agreed upon on every axis, where it is bounded and reached, beside the mean of the last positions.
-fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+fn values(record: &RunRecord<'_>, course: &CourseFound, metrics: &Metrics) -> Vec<(String, String, String)> {
+    let setup = record.setup;
     let Some(within) = course.within.as_ref().filter(|_| course.reached) else { return Vec::new() };
     let mean = |axis: usize| metrics.final_means.as_ref().and_then(|means| means.get(axis)).copied();
-    let agreed = if metrics.disagreement.is_agreement() { "" } else { " (mean, not agreed)" };
+    let agreed = if record.is_agreed(metrics) { "" } else { " (mean, not agreed)" };
     let for_zero = if course.moved_by_s { " with s ≡ 0" } else { "" };
     let unit = |axis: usize| match text::unit(&names::unit(setup, 0, Signal::Position, axis)) {
         none if none.is_empty() => none,
@@ -162,7 +170,7 @@ fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String
         let half = 0.5 * (high - low);
         (
             format!("{}, {}", names::value_words(setup), names::axis_words(setup, 0, axis)),
-            format!("{} ± {}{}{for_zero}", number(low + half), number(half), unit(axis)),
+            format!("{} ± {}{}{for_zero}", with_digits_of(low + half, half), number(half), unit(axis)),
             mean(axis).map_or_else(|| "–".to_owned(), |mean| format!("{}{}{agreed}", number(mean), unit(axis))),
         )
     };
@@ -170,12 +178,16 @@ fn values(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Vec<(String
 }
 
 fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
-    // Of many the largest, in their order.
+    let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
+    // Of many the largest, whether predicted or seen, in their order.
+    let size = |peak: &PredictedTorque| {
+        let seen = observed(peak.agent, peak.axis).map_or(0.0, |seen| seen.value.abs());
+        peak.value.abs().max(seen)
+    };
     let mut all: Vec<(usize, &PredictedTorque)> = course.peak_torques.iter().enumerate().collect();
-    all.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
+    all.sort_by(|a, b| size(b.1).total_cmp(&size(a.1)));
     all.truncate(MOST_TORQUES);
     all.sort_by_key(|(place, _)| *place);
-    let observed = |agent, axis| metrics.peak_torques.iter().find(|peak| (peak.agent, peak.axis) == (agent, axis));
     html! {
         div.card.scroll {
             h3 { "Peak " (names::input_words(setup).0) " " span.by {
@@ -184,11 +196,11 @@ fn torques(setup: &Setup, course: &CourseFound, metrics: &Metrics) -> Markup {
                 @else { "an indication where estimates start within 20 % of them" }
             } }
             table.numbers {
-                thead { tr { th { "Joint" } th { "predicted" } th { "observed" } th title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th { "estimate starts off by" } } }
+                thead { tr { th scope="col" { "Agent" } th scope="col" { "predicted" } th scope="col" { "observed" } th scope="col" title="while V ≤ V(0), near the course of s ≡ 0" { "bound by V(0)" } th scope="col" { "estimate starts off by" } } }
                 tbody { @for (_, peak) in &all {
                     @let unit = text::unit(&names::unit(setup, peak.agent, Signal::Torque, peak.axis));
                     tr {
-                        th { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
+                        th scope="row" { span.dot.{ "a" (peak.agent) } {} (names::agent_name(setup, peak.agent)) " · " (names::torque_words(setup, peak.agent, peak.axis)) }
                         td { (text::unbroken(&format!("{} {unit}", number(peak.value.abs())))) }
                         td { @if let Some(seen) = observed(peak.agent, peak.axis) { (text::unbroken(&format!("{} {unit}", number(seen.value.abs())))) } @else { "–" } }
                         td { @if let Some(at_most) = peak.at_most { (text::unbroken(&format!("{} {unit}", number(at_most)))) } @else { "–" } }

@@ -20,6 +20,15 @@ use super::super::text::{self, number, prose};
 pub(super) const BALANCE_WORDS: &str = "The proof rests on an identity: V loses what the law dissipates, dV/dt = −sᵀKs for most laws. The \
      residual is by how much V + ∫ dissipation strays from that along the run, relative to V; a small one says that the run was computed well.";
 
+/// What is drawn of the balance. What acts from outside is part of the identity, so that what is integrated may fall under a push.
+pub(super) fn balance_letters(record: &RunRecord<'_>) -> &'static str {
+    let outside = [Signal::External, Signal::ExternalTorque, Signal::Disturbance];
+    match record.outcome.recording.columns.iter().any(|column| outside.contains(&column.signal)) {
+        true => "V + ∫ (dissipation − power from outside) = V(0)",
+        false => "V + ∫ dissipation = V(0)",
+    }
+}
+
 /// How the run ended, or how far it is.
 pub(super) fn ending(record: &RunRecord<'_>, goes_on: bool) -> String {
     if !goes_on {
@@ -87,11 +96,11 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                     @if let Some(agreement) = &metrics.agreement {
                         div.scroll {
                             table.numbers {
-                                thead { tr { th { "Agreement" @if !unit.is_empty() { " in " (unit) } } th { "predicted" } th { (if metrics.disagreement.is_agreement() { "reached" } else { "mean, not agreed" }) } th { "farthest agent" } } }
+                                thead { tr { th scope="col" { "Agreement" @if !unit.is_empty() { " in " (unit) } } th scope="col" { "predicted" } th scope="col" { (if record.is_agreed(metrics) { "reached" } else { "mean, not agreed" }) } th scope="col" { "farthest agent" } } }
                                 tbody {
                                     @for a in agreement.iter().take(32) {
                                         tr {
-                                            th { (names::axis_words(record.setup, 0, a.axis)) }
+                                            th scope="row" { (names::axis_words(record.setup, 0, a.axis)) }
                                             td { (number(a.predicted)) }
                                             td { (number(a.reached)) }
                                             td { (number(a.distance)) }
@@ -219,7 +228,7 @@ pub(super) fn final_gap(setup: &Setup) -> String {
 }
 
 fn fact(name: &str, what: Markup) -> Markup {
-    html! { tr { th { (name) } td { (what) } } }
+    html! { tr { th scope="row" { (name) } td { (what) } } }
 }
 
 /// The run beside the same run in continuous time.
@@ -254,9 +263,9 @@ pub(crate) fn digital(record: &RunRecord<'_>) -> Markup {
                     span.by { "with exact measurements and no limits; both until the earlier end" }
                 }
                 table.numbers {
-                    thead { tr { th {} th { "continuous" } th { "digital" } } }
+                    thead { tr { th {} th scope="col" { "continuous" } th scope="col" { "digital" } } }
                     tbody { @for (name, unit, continuous, digital) in rows {
-                        tr { th { (name) } td { (cell(continuous, unit)) } td { (cell(digital, unit)) } }
+                        tr { th scope="row" { (name) } td { (cell(continuous, unit)) } td { (cell(digital, unit)) } }
                     } }
                 }
                 @if let Some(gap) = cost.largest_gap {

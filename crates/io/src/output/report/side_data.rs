@@ -150,7 +150,7 @@ fn quantities(record: &RunRecord<'_>, table: &Table<'_>, main: &mut Series<'_>) 
     if let Ok(series) = DisagreementSeries::of_table(table) {
         let unit = names::gap_unit(setup);
         let mut lines = vec![Line { series: main.add(&series.overall, false), style: Style::Run }];
-        if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.course()) {
+        if let Some(course) = record.prediction.as_ref().and_then(|prediction| prediction.drawn()) {
             lines.push(Line { series: main.add(&course.at(table.t_s), false), style: Style::Predicted });
         }
         let mut entries = vec![Entry { name: "largest".into(), unit: unit.clone(), lines }];
