@@ -10,6 +10,7 @@ mod agreement;
 pub mod certificate;
 mod conserved;
 pub mod derivation;
+mod finite;
 mod fixed;
 mod footing;
 mod graphs;

@@ -10,14 +10,13 @@ use std::io::{self, ErrorKind, IsTerminal, Stdout, Write};
 
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
-use forwardstep::io::{breaks_lines, is_invisible, one_line, shown, steers_terminals};
+use forwardstep::io::{breaks_lines, is_invisible, one_line, shown, steers_terminals, unbroken};
 use miette::{Diagnostic, MietteHandlerOpts, ReportHandler};
 use textwrap::core::display_width;
 use textwrap::{Options, WordSeparator, WordSplitter};
 
 pub(crate) use crate::mistake::Plain;
 use crate::mistake::Told;
-use crate::number;
 use crate::status::Status;
 
 /// Green, for what holds.
@@ -163,8 +162,12 @@ fn explained(mistake: &dyn Diagnostic, width: Option<usize>, colour: bool) -> St
 
 /// The same text in lines of this width, if there is one.
 fn wrapped(text: &str, width: Option<usize>) -> String {
-    let filled = |width| textwrap::fill(&number::with_units(text), between_words(width)).replace(number::TIE, " ");
-    width.map_or_else(|| text.to_owned(), filled)
+    width.map_or_else(|| text.to_owned(), |width| filled(text, between_words(width)))
+}
+
+/// Lines that part no number from its unit.
+fn filled(text: &str, options: Options<'_>) -> String {
+    textwrap::fill(&unbroken(text), options).replace('\u{a0}', " ")
 }
 
 /// Lines of this width, broken between words only.
@@ -200,7 +203,7 @@ fn continued(line: &str, width: usize) -> String {
     };
     let (first, rest) = (" ".repeat(indent), " ".repeat(hang));
     let options = between_words(width).initial_indent(&first).subsequent_indent(&rest);
-    textwrap::fill(&number::with_units(content), options).replace(number::TIE, " ")
+    filled(content, options)
 }
 
 /// Explains a mistake in the arguments on standard error, or shows the help that they ask for on standard output, which fails where that

@@ -105,7 +105,20 @@ fn turns(roots: &str, delay: &str) -> String {
 
 /// How much is left, of the worst and as stated, in percent.
 fn percents(said: &str) -> [f64; 2] {
-    let number = |after: &str| said.split(after).nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let number = |after: &str| {
+        let number = said.split(after).nth(1).unwrap().split(" %").next().unwrap().replace('−', "-");
+        // `2.038 × 10⁻⁶` as a program reads it.
+        let power = |superscript: &str| -> String {
+            let plain = |letter| {
+                "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|known| known == letter).and_then(|at| "-0123456789".chars().nth(at))
+            };
+            superscript.chars().filter_map(plain).collect()
+        };
+        match number.split_once(" × 10") {
+            Some((digits, exponent)) => format!("{digits}e{}", power(exponent)).parse().unwrap(),
+            None => number.parse().unwrap(),
+        }
+    };
     [number(if said.contains("grows: ") { "grows: " } else { "worst: " }), number("as stated it is ")]
 }
 

@@ -22,4 +22,4 @@ pub use foreign::Foreign;
 pub use meant::Meant;
 pub use shown::{Shown, breaks_lines, is_invisible, one_line, shown, steers_terminals};
 pub use urdf::{UrdfOptions, UrdfRobot, read_urdf};
-pub use wording::{choose, for_shell, instant};
+pub use wording::{choose, for_shell, instant, unbroken};

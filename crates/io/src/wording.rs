@@ -154,9 +154,39 @@ pub fn choose(word: &str, kind: &str, candidates: &[impl AsRef<str>]) -> String 
     }
 }
 
+/// The same text with a blank at which no line may break, U+00A0, within numbers, before units and within these, and before a noun that is counted.
+pub fn unbroken(text: &str) -> String {
+    let is_digit = |letter: char| letter.is_ascii_digit() || "⁰¹²³⁴⁵⁶⁷⁸⁹".contains(letter);
+    let mut words = text.split(' ');
+    let mut before = words.next().unwrap_or_default();
+    let mut tied = before.to_owned();
+    for word in words {
+        let is_unit =
+            word.starts_with(|letter: char| letter.is_alphabetic() || letter == '%') || word.starts_with("1/s");
+        let is_unit = is_unit && !matches!(word, "with" | "or" | "and");
+        let holds = [before, word].contains(&"×") || before == "N" || before.ends_with(is_digit) && is_unit;
+        tied.push(if holds { '\u{a0}' } else { ' ' });
+        tied.push_str(word);
+        before = word;
+    }
+    tied
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_size_is_tied_to_its_unit_and_not_to_what_is_said_of_it() {
+        let shown = |text: &str| unbroken(text).replace('\u{a0}', "_");
+        assert_eq!(shown("29.38 N m"), "29.38_N_m");
+        assert_eq!(shown("0.1674 ± 2.1 × 10⁻⁵ m with s ≡ 0"), "0.1674 ± 2.1_×_10⁻⁵_m with s ≡ 0");
+        assert_eq!(shown("3.4 × 10⁻³ rad or m"), "3.4_×_10⁻³_rad or m");
+        assert_eq!([shown("not yet"), shown(""), shown("12 %")], ["not yet", "", "12_%"]);
+        let sentence = "at 33.68 N m, 2.5 × 10⁻⁴ rad/s (12 %), −0.5 1/s by 40 s; 3 robots and 2 and a half";
+        let tied = "at 33.68_N_m, 2.5_×_10⁻⁴_rad/s (12_%), −0.5_1/s by 40_s; 3_robots and 2 and a half";
+        assert_eq!([shown(sentence), shown("  two  gaps stay")], [tied, "  two  gaps stay"]);
+    }
 
     #[test]
     fn numbers_read_as_written() {

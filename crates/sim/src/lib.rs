@@ -7,6 +7,7 @@
 
 mod agents;
 mod build;
+pub mod busy;
 mod closed_loop;
 pub mod coupling;
 pub mod delay;

@@ -160,24 +160,20 @@ impl Network {
         if self.schedule.graphs.is_empty() {
             return Err(NetworkError::NoGraphs);
         }
-        for (graph, edge) in self
-            .schedule
-            .graphs
-            .iter()
-            .enumerate()
-            .flat_map(|(graph, edges)| edges.iter().map(move |edge| (graph, edge)))
-        {
-            let (from, to) = (edge.from, edge.to);
-            if from >= self.agents || to >= self.agents {
-                return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
-            }
-            if let Weight::Formula(weight) = edge.weight
-                && weight >= self.weights.len()
-            {
-                return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
-            }
-            if edge.delay >= self.delays.len() {
-                return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
+        for (graph, edges) in self.schedule.graphs.iter().enumerate() {
+            for edge in edges {
+                let (from, to) = (edge.from, edge.to);
+                if from >= self.agents || to >= self.agents {
+                    return Err(NetworkError::NoSuchAgent { graph, from, to, agents: self.agents });
+                }
+                if let Weight::Formula(weight) = edge.weight
+                    && weight >= self.weights.len()
+                {
+                    return Err(NetworkError::NoSuchWeight { graph, weight, weights: self.weights.len() });
+                }
+                if edge.delay >= self.delays.len() {
+                    return Err(NetworkError::NoSuchDelay { graph, delay: edge.delay, delays: self.delays.len() });
+                }
             }
         }
         Ok(())

@@ -27,7 +27,7 @@ mod slopes;
 mod windows;
 mod zeros;
 
-use forwardstep_sim::{Setup, check_shape};
+use forwardstep_sim::{Setup, check_setup};
 use num_rational::BigRational;
 
 pub(crate) use delays::largest;
@@ -68,7 +68,7 @@ pub struct Statement {
     pub proof: Option<Proof>,
 }
 
-/// The certificate of `report`, which is that of `setup`; empty for one whose parts do not fit together.
+/// The certificate of `report`, which is that of `setup`; empty for one that has no meaning.
 ///
 /// ```
 /// # use forwardstep_check::{certify, check};
@@ -79,7 +79,7 @@ pub struct Statement {
 /// ```
 pub fn certify(setup: &Setup, report: &Report) -> Certificate {
     // Desired dynamics that are a design of the paper are certified as that design.
-    if check_shape(setup).is_err() {
+    if check_setup(setup).is_err() {
         return Certificate { theorem: report.theorem.name(), statements: Vec::new(), influence: None };
     }
     let designed = designed(setup);

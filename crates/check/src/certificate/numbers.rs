@@ -9,6 +9,7 @@ use num_rational::BigRational;
 use super::producers::Claim;
 use super::proof::Proof;
 use crate::Answer;
+use crate::finite::finite;
 use crate::kinds::chain::{undefined_state, unmoved};
 use crate::kinds::matrix_factor::null_vector;
 use crate::surroundings::last_end_s;
@@ -166,7 +167,7 @@ fn shortened(agent: &AgentSetup) -> Option<(Vec<f64>, Vec<f64>)> {
     let entries: Vec<Interval> = rows.iter().flatten().map(|entry| entry.fold(&mut Intervals(&within))).collect();
     let middle = |entry: &Interval| 0.5 * (entry.low + entry.high);
     let at_start = DMatrix::from_row_iterator(rows.len(), rows.len(), entries.iter().map(middle));
-    let found = at_start.try_svd(false, true, f64::EPSILON, 0)?;
+    let found = finite(at_start)?.try_svd(false, true, f64::EPSILON, 0)?;
     let vector: Vec<f64> = found.v_t?.row(found.singular_values.imin()).iter().copied().collect();
     let square = |x: Interval| Interval::point(x.size()) * Interval::point(x.size());
     let total = |parts: &mut dyn Iterator<Item = Interval>| parts.fold(Interval::point(0.0), |sum, part| sum + part);

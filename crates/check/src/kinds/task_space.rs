@@ -11,6 +11,7 @@ use super::bounds::within_bounds;
 use super::spacecraft::never_zero;
 use super::start_attitude::{desired, scalar_squared};
 use super::{Claim, KindCheck};
+use crate::finite::finite;
 use crate::hypothesis::{Hypothesis, Id, KindEvidence, Named, Subject};
 use crate::inertia::{bounded_dynamics, uniform_inertia};
 use crate::reach::within_reach;
@@ -96,8 +97,9 @@ const ROUNDING: f64 = 1e-6;
 /// Ĵ must stay away from singularity along the run, which is not known before.
 fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
     let Some(j) = with_tip(agent, law, |tip| start(tip, agent, law)).flatten() else { return KindEvidence::NoTip };
-    let (floor, values) = (law.determinant_floor, j.singular_values());
-    let (smallest, largest) = (values.min(), values.max());
+    let floor = law.determinant_floor;
+    let [smallest, largest] =
+        finite(j.clone()).map(|j| j.singular_values()).map_or([f64::NAN; 2], |values| [values.min(), values.max()]);
     if !(smallest.is_finite() && smallest > ROUNDING * largest) {
         KindEvidence::RankDeficient { smallest, largest }
     } else if law.tip.follows() == Follows::Position {
@@ -109,7 +111,8 @@ fn jacobian(agent: &AgentSetup, law: &TaskSpaceLaw) -> KindEvidence {
 
 /// The u of length one for which |uᵀĴ| is smallest at the start.
 pub(crate) fn left_null(agent: &AgentSetup, law: &TaskSpaceLaw) -> Option<Vec<f64>> {
-    let svd = with_tip(agent, law, |tip| start(tip, agent, law)).flatten()?.try_svd(true, false, f64::EPSILON, 0)?;
+    let svd =
+        finite(with_tip(agent, law, |tip| start(tip, agent, law)).flatten()?)?.try_svd(true, false, f64::EPSILON, 0)?;
     Some(svd.u?.column(svd.singular_values.imin()).iter().copied().collect())
 }
 

@@ -4,6 +4,7 @@ use forwardstep_core::robot::TwoVelocity;
 use forwardstep_sim::{AgentSetup, DynamicsAt};
 use nalgebra::{DMatrix, DVector};
 
+use crate::finite::finite;
 use crate::practical::rates::{Gains, dynamics};
 use crate::prediction::roots::characteristic::C;
 
@@ -35,7 +36,7 @@ impl Response {
                 &y * gamma * y.transpose()
             },
         );
-        Some(Response { mass, damping: gains.damping + viscous(agent)?, learning })
+        Some(Response { mass, damping: gains.damping + viscous(agent)?, learning: finite(learning)? })
     }
 
     /// [s₀, s₁] of s = s₀ + s₁ p + O(p²), for a torque on `axis` and s on the same; s₁ only where s₀ is zero, since it never counts

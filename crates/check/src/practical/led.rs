@@ -3,6 +3,7 @@
 
 use forwardstep_core::controller::Jet;
 use forwardstep_sim::Setup;
+use forwardstep_sim::busy::busy_rows;
 use forwardstep_sim::recording::Signal;
 use forwardstep_sim::trajectory::Trajectory;
 
@@ -47,24 +48,20 @@ impl Led {
     }
 }
 
-/// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
-pub(super) fn way(setup: &Setup) -> Vec<Led> {
-    let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
-    states(setup, &those, Pace::Even)
-}
-
-/// The same, close to each other where much happens, so that what they pass through can be integrated: a start that takes ten seconds of an hour
-/// is in no state of an even pace.
-pub(super) fn close_way(setup: &Setup) -> Vec<Led> {
-    let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
-    states(setup, &those, Pace::Close)
-}
-
 /// How states are taken from a recording.
 #[derive(Clone, Copy, PartialEq)]
-enum Pace {
+pub(super) enum Pace {
+    /// At even times.
     Even,
+    /// Close to each other where much happens, so that what is passed through can be integrated: a start that takes ten seconds of an hour is in
+    /// no state of an even pace.
     Close,
+}
+
+/// States of all agents under (6)–(7) on their way. It takes a run of the reference dynamics: worked out once, and handed to whoever looks.
+pub(super) fn way(setup: &Setup, pace: Pace) -> Vec<Led> {
+    let those: Vec<usize> = (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])).collect();
+    states(setup, &those, pace)
 }
 
 /// States of `agents` on their way; none where nothing is known of it, or there are too many.
@@ -141,34 +138,10 @@ pub(super) fn close_rows(columns: &Columns<'_>, rows: usize, [agent, axes]: [usi
     busy(columns, rows, [agent, axes], (MOST_CLOSE / agents.max(1)).clamp(2, MOST_CLOSE_OF_ONE))
 }
 
-/// At most so many rows, of which half are spent evenly, and half where ż and q̇ of an agent change, each axis as a part of all that it does.
+/// At most so many rows, close to each other where q̇ and ż of an agent change.
 fn busy(columns: &Columns<'_>, rows: usize, [agent, axes]: [usize; 2], each: usize) -> Vec<usize> {
-    if rows <= each {
-        return (0..rows).collect();
-    }
-    let mut share = vec![0.0; rows];
-    for (signal, axis) in [Signal::Velocity, Signal::Reference(1)]
-        .into_iter()
-        .flat_map(|signal| (0..axes).map(move |axis| (signal, axis)))
-    {
-        let values = columns.column(agent, signal, axis).unwrap_or_default();
-        let steps = || values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-        let all: f64 = steps().sum();
-        if all > 0.0 && all.is_finite() {
-            share.iter_mut().skip(1).zip(steps()).for_each(|(share, step)| *share += step / all);
-        }
-    }
-    let (all, even) = (share.iter().sum::<f64>().max(f64::MIN_POSITIVE), 1.0 / rows as f64);
-    let mut so_far = 0.0;
-    let progress: Vec<f64> = share
-        .iter()
-        .map(|share| {
-            so_far += even + share / all;
-            so_far
-        })
-        .collect();
-    let row = |k: usize| progress.partition_point(|done| *done < so_far * k as f64 / (each - 1) as f64).min(rows - 1);
-    let mut chosen: Vec<usize> = std::iter::once(0).chain((1..each - 1).map(row)).chain([rows - 1]).collect();
-    chosen.dedup();
-    chosen
+    let signals = [Signal::Velocity, Signal::Reference(1)];
+    let all =
+        signals.into_iter().flat_map(|signal| (0..axes).filter_map(move |axis| columns.column(agent, signal, axis)));
+    busy_rows(rows, each, all)
 }

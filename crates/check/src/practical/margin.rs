@@ -8,7 +8,7 @@ use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Setup, check_setup};
 
 use super::PracticalAnswer;
 use super::held::{Hold, longest_period_s};
-use super::led::{Led, way};
+use super::led::{Led, Pace, way};
 use super::looped::degree;
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping_of};
@@ -106,7 +106,7 @@ impl SamplingMargin {
     pub fn of(setup: &Setup) -> Option<SamplingMargin> {
         setup.control.as_ref()?;
         check_setup(setup).ok()?;
-        SamplingMargin::on(setup, &way(setup))
+        SamplingMargin::on(setup, &way(setup, Pace::Even))
     }
 
     /// Whether it speaks of every agent, and no reference is a rival of it: all are under (6)–(7), with references that are slow beside their damping.
@@ -153,7 +153,7 @@ impl SamplingMargin {
     /// control is.
     pub fn longest_period_s(setup: &Setup, near_s: f64, hold: impl Fn(f64) -> Hold) -> Option<f64> {
         check_setup(setup).ok()?;
-        let looked = looked(setup, &way(setup));
+        let looked = looked(setup, &way(setup, Pace::Even));
         if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
     }
 

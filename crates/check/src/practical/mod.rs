@@ -35,7 +35,7 @@ mod words;
 
 use forwardstep_sim::{Adaptive, Setup, check_setup};
 
-use self::led::{close_way, way};
+use self::led::Pace;
 use self::loads::limits;
 use crate::hypothesis::Named;
 use crate::instance::designed;
@@ -205,7 +205,7 @@ pub fn practical(setup: &Setup) -> Practical {
     let designed = designed(setup);
     let setup = designed.as_ref().unwrap_or(setup);
     let limited = (0..setup.agents.len()).any(|agent| limits(setup, agent).is_some());
-    let way = if limited || setup.control.is_some() { way(setup) } else { Vec::new() };
+    let way = if limited || setup.control.is_some() { led::way(setup, Pace::Even) } else { Vec::new() };
     let whole = WholeLoop::on(setup, &way);
     let mut margin = SamplingMargin::on(setup, &way);
     // Where parameters are known, so that neither freezes what adapts.
@@ -220,8 +220,9 @@ pub fn practical(setup: &Setup) -> Practical {
         let grows = whole.answer() >= PracticalAnswer::NotShown || whole.lasting_per_s().is_some();
         grows || whole.start.slowed_per_s().is_some()
     });
-    let power =
-        PowerBound::on(setup, margin.as_ref(), || if setup.control.is_some() { close_way(setup) } else { Vec::new() });
+    let power = PowerBound::on(setup, margin.as_ref(), || {
+        if setup.control.is_some() { led::way(setup, Pace::Close) } else { Vec::new() }
+    });
     let power = power.filter(|_| !unbounded);
     let margin = margin.map(Finding::SamplingMargin);
     let agreement = AgreementBound::of(setup, power.as_ref()).filter(|_| !unbounded).map(Finding::TrackingDisagreement);

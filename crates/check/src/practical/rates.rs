@@ -28,6 +28,7 @@ use forwardstep_sim::{Adaptive, AgentSetup, DynamicsAt, Known, Setup, check_shap
 use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
+use crate::finite::finite;
 use crate::inertia::Inertias;
 
 /// Of a multiplier that is one.
@@ -223,7 +224,7 @@ fn largest(scale: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Option<f64> {
     let l = scale.clone().cholesky()?.l();
     let half = l.solve_lower_triangular(matrix)?;
     let whole = l.solve_lower_triangular(&half.transpose())?;
-    let largest = whole.symmetric_eigenvalues().max();
+    let largest = finite(whole)?.symmetric_eigenvalues().max();
     largest.is_finite().then_some(largest)
 }
 

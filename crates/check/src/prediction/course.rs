@@ -266,17 +266,18 @@ fn with_enough_rows(mut ideal: Setup) -> Rows {
 }
 
 /// What the reference dynamics alone record, as far as so much `work` leads; `None` where they depend on more than the network.
-pub(crate) fn reference_alone(setup: &Setup, mut work: f64) -> Option<Recording> {
-    let ideal = ideal(setup).ok()?;
-    let before = told_before(setup, &ideal);
-    Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
+pub(crate) fn reference_alone(setup: &Setup, work: f64) -> Option<Recording> {
+    followed(setup, &ideal(setup).ok()?, work)
 }
 
 /// The same with rows that are close enough for integrals.
-pub(crate) fn reference_closely(setup: &Setup, mut work: f64) -> Option<Recording> {
-    let Rows { ideal, .. } = with_enough_rows(ideal(setup).ok()?);
-    let before = told_before(setup, &ideal);
-    Some(simulated(&ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
+pub(crate) fn reference_closely(setup: &Setup, work: f64) -> Option<Recording> {
+    followed(setup, &with_enough_rows(ideal(setup).ok()?).ideal, work)
+}
+
+fn followed(setup: &Setup, ideal: &Setup, mut work: f64) -> Option<Recording> {
+    let before = told_before(setup, ideal);
+    Some(simulated(ideal, before.as_deref(), &mut work, &mut |_| ControlFlow::Continue(())).ok()?.0.recording)
 }
 
 /// The same where a leader is followed.

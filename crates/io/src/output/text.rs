@@ -4,7 +4,7 @@ use forwardstep_core::signal::superscript;
 use forwardstep_sim::quantity::with_power;
 use maud::{Markup, html};
 
-pub(crate) use crate::wording::count;
+pub(crate) use crate::wording::{count, unbroken};
 
 /// Four significant digits, with a power of ten where the number is very small or large.
 pub(crate) fn number(x: f64) -> String {
@@ -63,22 +63,6 @@ pub(crate) fn in_unit(unit: &str) -> String {
     if matches!(unit, "" | "1") { String::new() } else { format!(" in {unit}") }
 }
 
-/// Sizes in a narrow cell: lines break before what is said of them, and not within a number, before a unit or within one.
-pub(crate) fn unbroken(sizes: &str) -> String {
-    let is_digit = |letter: char| letter.is_ascii_digit() || "⁰¹²³⁴⁵⁶⁷⁸⁹".contains(letter);
-    let mut words = sizes.split(' ');
-    let mut before = words.next().unwrap_or_default();
-    let mut text = before.to_owned();
-    for word in words {
-        let is_unit = word.starts_with(char::is_alphabetic) && !matches!(word, "with" | "or");
-        let tied = [before, word].contains(&"×") || before == "N" || before.ends_with(is_digit) && is_unit;
-        text.push(if tied { '\u{a0}' } else { ' ' });
-        text.push_str(word);
-        before = word;
-    }
-    text
-}
-
 /// `2.5e-4` as [`number`] writes it, `2.5 × 10⁻⁴`, wherever a word is such a number.
 fn powers(words: &str) -> String {
     let is_part = |c: char| c.is_alphanumeric() || "._-−".contains(c);
@@ -119,15 +103,6 @@ pub(crate) fn time_reached(until_s: f64, end_s: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_size_is_tied_to_its_unit_and_not_to_what_is_said_of_it() {
-        let shown = |text: &str| unbroken(text).replace('\u{a0}', "_");
-        assert_eq!(shown("29.38 N m"), "29.38_N_m");
-        assert_eq!(shown("0.1674 ± 2.1 × 10⁻⁵ m with s ≡ 0"), "0.1674 ± 2.1_×_10⁻⁵_m with s ≡ 0");
-        assert_eq!(shown("3.4 × 10⁻³ rad or m"), "3.4_×_10⁻³_rad or m");
-        assert_eq!([shown("not yet"), shown(""), shown("12 %")], ["not yet", "", "12 %"]);
-    }
 
     #[test]
     fn numbers_in_sentences_are_written_as_others_are() {

@@ -118,7 +118,7 @@ pub enum NoReferenceGains {
     )]
     Stays,
     /// The setup has no meaning, or numbers that cannot be reckoned with.
-    #[error("the gains of the reference overflow double precision")]
+    #[error("the setup has no meaning, or the gains of the reference overflow double precision")]
     Unclear,
 }
 

@@ -44,7 +44,7 @@ use self::linear::Linear;
 pub(super) use self::network::degree;
 use self::place::{NOISE, Place};
 use super::PracticalAnswer;
-use super::led::{Led, way};
+use super::led::{Led, Pace, way};
 use crate::kinds::is_lagrangian;
 
 pub use self::place::{LoopAt, LoopRate};
@@ -103,7 +103,7 @@ impl WholeLoop {
         let along_targets = |index: usize, agent| !is_lagrangian(agent) || setup.tracks(index);
         let mut agents = setup.agents.iter().enumerate();
         let adapts = agents.any(|(index, agent)| agent.estimates() && along_targets(index, agent));
-        WholeLoop::found(setup, &way(setup), adapts)
+        WholeLoop::found(setup, &way(setup, Pace::Even), adapts)
     }
 
     /// The same with states on the way of agents under (6)–(7).

@@ -6,6 +6,7 @@
 mod kinematics;
 
 use forwardstep_core::robot::tree::Tree;
+use forwardstep_sim::busy::busy_rows;
 use forwardstep_sim::leader::Leading;
 use forwardstep_sim::network::Network;
 use forwardstep_sim::push::{AttachmentPoint, Effect};
@@ -17,7 +18,6 @@ use forwardstep_sim::{
 };
 use serde::Serialize;
 
-use super::super::decimate::busy_rows;
 use super::super::packets;
 use super::super::table::Table;
 use super::super::timeline::Timeline;
