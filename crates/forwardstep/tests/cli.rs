@@ -1,6 +1,7 @@
 //! The program as a user meets it: what it prints, what it writes, and how it exits.
 
 mod advice;
+mod beside;
 mod told;
 
 use std::fs;

@@ -24,8 +24,8 @@ type Change = (&'static str, fn(&mut Setup, &Setup));
 
 /// An edge more from somewhere to somewhere.
 fn edge(setup: &mut Setup, edge: Edge) {
-    let graphs = setup.network.schedule.graphs.iter().map(|graph| graph.iter().copied().chain([edge]).collect());
-    setup.network.schedule = Schedule::fixed(graphs.last().unwrap_or_default());
+    let mut graphs = setup.network.schedule.graphs.iter().map(|graph| graph.iter().copied().chain([edge]).collect());
+    setup.network.schedule = Schedule::fixed(graphs.next_back().unwrap_or_default());
 }
 
 fn to(setup: &mut Setup, to: usize) {

@@ -73,3 +73,21 @@ pub fn progress<'a>(rows: usize, signals: impl Iterator<Item = &'a [f64]>, spent
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One sharp turn in the first second of a hundred that swing: it had a dozen of 1200 points, and was drawn as a polygon.
+    #[test]
+    fn rows_are_taken_where_signals_bend() {
+        let t_s = |row: usize| 0.02 * row as f64;
+        let start = |row: usize| libm::exp(-4.0 * t_s(row)) * libm::sin(8.0 * t_s(row));
+        let values: Vec<f64> = (0..5001).map(|row| start(row) + 0.3 * libm::sin(t_s(row))).collect();
+        let within_a_second = |picks: &[usize]| picks.iter().filter(|row| t_s(**row) < 1.0).count();
+        let picks = busy_rows(5001, 1000, std::iter::once(&values[..]));
+        assert!(picks.len() <= 1000 && within_a_second(&picks) > 40, "{} of {}", within_a_second(&picks), picks.len());
+        let share = |spent| progress(5001, std::iter::once(&values[..]), spent)[50];
+        assert!(share(Spent::OnBendsToo) > 3.0 * share(Spent::OnChanges), "{}", share(Spent::OnChanges));
+    }
+}

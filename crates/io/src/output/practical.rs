@@ -144,3 +144,15 @@ impl Watched {
         (sampling_margin.is_some() || static_load.is_some() || tracking_power.is_some()).then_some(found)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn that_not_all_rows_were_looked_at_is_said() {
+        let recording = Recording { t_s: vec![0.0; 3001], ..Recording::default() };
+        let words = |rows| Watched { rows, ..Watched::default() }.rows_words(&recording);
+        assert_eq!([words(500), words(3001), words(0)], [Some("500 of 3001 rows".to_owned()), None, None]);
+    }
+}

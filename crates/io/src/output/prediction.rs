@@ -494,4 +494,20 @@ mod tests {
         let none = CourseFound { t_s: Vec::new(), disagreement: Vec::new(), ..found };
         assert!(none.at(&[1.0])[0].is_nan());
     }
+
+    #[test]
+    fn a_value_has_the_digits_that_its_error_leaves() {
+        let cases = [
+            (-0.256_862_184_7, 3.1e-11, "−0.25686218470"),
+            (-0.468_357_09, 1.144e-6, "−0.468357"),
+            (1234.5678, 0.02, "1234.57"),
+            (12.34, 40.0, "12.34"),
+            (1e-9, 1e-4, "1 × 10⁻⁹"),
+            (0.0, 1e-6, "0"),
+            (0.5, 0.0, "0.5"),
+        ];
+        for (value, error, wanted) in cases {
+            assert_eq!(with_digits_of(value, error), wanted);
+        }
+    }
 }
