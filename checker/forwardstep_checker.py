@@ -170,8 +170,7 @@ def choice(value, where):
 def known(kind, kinds, what, value=None): return decided(kind in kinds, f"{what} of the kind `{kind}` are not known", value)
 
 # The same, of those that are known.
-def chosen(value, where, kinds, what):
-    return known((found := choice(value, where))[0], kinds, what, found)
+def chosen(value, where, kinds, what): return known((found := choice(value, where))[0], kinds, what, found)
 
 # A number for a message.
 def said(number): return str(number) if len(str(number)) <= 24 else f"{float(number):.9g}"
@@ -1878,14 +1877,16 @@ def drive(claim, at=FOR_EVER):
     return [(tree, (-gamma,) * 2, (gamma,) * 2) for tree in sums]
 
 # A value of the sign is solved for so often that the error that stays is small, about h sup|ξ̇₀|/α: h κ₀, or h √(κ₀κ₁), ≤ 0.01, and beside
-# what the leader moves. For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α.
+# what the leader moves. For a pair the response swings: its absolute integral is coth(π a/(2 b))/α < (1 + b/a)/α. (110) and (119) read
+# motions, which show too late what the sign did where torques come late or velocities are filtered.
 @rule("set-valued-sign", "text")
 def set_valued(claim):
-    s, body, control = claim.scenario, claim.scenario.body, claim.scenario.control
+    s, body, control = claim.scenario, claim.scenario.body, claim.scenario.control or {}
     h = 1 / positive(control.get("sample_hz"), "sample_hz") if control else positive(body.get("sign_period_s", Fraction(1, 1000)), "period")
-    (alpha, _), (a, b) = coefficients(s), roots_of(body)[0]
+    (alpha, _), (a, b), within = coefficients(s), roots_of(body)[0], lambda tree: attempt(enclose, tree, FOR_EVER) or WHOLE
     swing, mean = (1, a) if body.get("design") in FIRST_ORDER else (1 + abs(b) / a,) * 2
-    within, often = (lambda tree: attempt(enclose, tree, FOR_EVER) or WHOLE), 10_000 * h * h * alpha * mean <= 1 and h < s.end_s
+    lags = exact(control.get("computation_delay_s", 0), "delay") > 0 or control.get("velocity", "measured") != "measured"
+    often = 10_000 * h * h * alpha * mean <= 1 and h < s.end_s and not (lags and body.get("design") in ("continuous", "differentiable"))
     require(claim.proof, body.get("sign", "implicit") == "implicit" and often, "is not so by the text")
     driven = max((min(size(within(tree)), gamma[0]) for tree, _, gamma in drive(claim)), default=0) if s.motion else 0
     moved_ = max((high - low for low, high in map(within, s.motion or [])), default=0)

@@ -1446,6 +1446,13 @@ class FalseProofs(unittest.TestCase):
                 judge("theorem-8", "set-valued-sign", lambda entry: None, change)
             else:
                 self.rejected("theorem-8", "set-valued-sign", "is not so", lambda entry: None, change)
+        # Where torques come late, or velocities are filtered, (110) sees too late what it did.
+        for control, judge in (("", self.accepted), ("computation_delay_s = 1e-5", None), ("velocity.filtered_difference.cut_off_hz = 60", None)):
+            change = "[[agents]]", f"[control]\nsample_hz = 2000\n{control}\n\n[[agents]]"
+            if judge:
+                judge("theorem-8", "set-valued-sign", lambda entry: None, change)
+            else:
+                self.rejected("theorem-8", "set-valued-sign", "is not so", lambda entry: None, change)
 
     def test_terms_of_chains_have_values_everywhere(self):
         for text, fine in (("x^2 - sin(x)/3", True), ("1/(1 + x^2)", True), ("sqrt(1 + x^2)", True), ("abs(x)^1.5", True), ("abs(x)^0.5", None), ("x^1.5", None), ("1/x", None),

@@ -10,11 +10,17 @@
 //! ½ δ D to what ξ_0 moves meanwhile. So T_ij + 1½ δ stands for T_ij throughout. Controllers that sample hear up to a period later
 //! besides, and once more where what is told was held. With a path of n agents that is n δ D and not δ D, however short the delays are.
 //!
+//! All of this takes it that a sample shows what the sign did at the one before. (110) reads q̇ to set ż, and (119) q̈ to set z̈: where torques
+//! come late, or velocities are filtered, it sees that later still, and turns back too late. It chatters then over several samples, with all of
+//! γ and not with D, and nothing is said of what that leaves. The signs of all other designs read ż, or what is kept of the leader.
+//!
 //! Such a v is looked for by sweeping to and fro, in any precision, and verified with a bound on rounding.
 
 use forwardstep_sim::graph::{SpanningTree, spanning_tree};
-use forwardstep_sim::leader::Following;
+use forwardstep_sim::leader::{Following, FollowingDesign};
 use forwardstep_sim::{Exchange, Setup};
+
+use crate::practical::Hold;
 
 /// Edges that may be visited by sweeping.
 const MOST_VISITS: usize = 50_000_000;
@@ -23,9 +29,24 @@ const SETTLED: f64 = 1e-13;
 /// What is asked for beyond what is needed, as a part of the largest: far more than sweeping and rounding leave.
 const MORE: f64 = 1e-9;
 
+/// Whether the sign sees what it did through torques that come late or a filter of velocities.
+pub(crate) fn sign_lags(setup: &Setup, following: &Following) -> bool {
+    let reads_motion = match following.design {
+        FollowingDesign::Continuous | FollowingDesign::Differentiable => true,
+        FollowingDesign::Observer { .. }
+        | FollowingDesign::WithoutAcceleration
+        | FollowingDesign::Composite
+        | FollowingDesign::Swarm { .. } => false,
+    };
+    reads_motion && setup.control.as_ref().is_some_and(|control| !Hold::of(control).is_ideal())
+}
+
 /// A bound of what is left of q_i − q_0 behind a filter 1/(p + α), or one of two real roots whose product is α, in the unit of the axes;
-/// nothing where none could be verified, as of a leader that is an agent, of a delay without a bound, or of a weight that varies.
+/// nothing where none could be verified, as of a leader that is an agent, of a delay without a bound, of a weight that varies, or of a sign that lags.
 pub(crate) fn behind(setup: &Setup, following: &Following) -> Option<f64> {
+    if sign_lags(setup, following) {
+        return None;
+    }
     bound(following, &rows(setup, following, true)?)
 }
 

@@ -442,6 +442,24 @@ fn regress_bounds_of_power_know_of_starts_that_are_short_beside_the_run() {
     assert!(seen <= before, "{seen:e} of {before:e}");
 }
 
+/// The motion was taken from state to state of those that are looked at, and swings several times between them in a run that is long.
+#[test]
+fn regress_what_holding_feeds_is_the_same_however_long_a_motion_lasts() {
+    let held_w = |end_s: u32| {
+        let scenario = format!(
+            "format = 2\ntime = {{ end_s = {end_s}, record_every_s = 0.0025 }}\ncontrol = {{ sample_hz = 400, computation_delay_s = 0.0025 }}\n\
+             [[agents]]\nname = \"a\"\nrobot.planar_arm = {{ mass_kg = [1.0, 0.8], length_m = [1.0, 0.8] }}\n\
+             start.position_rad = [0.5, 0.3]\ntarget.sinusoids = [{{ offset = 0.5, waves = [{{ amplitude = 0.02, rad_per_s = 30 }}] }}, \
+             {{ offset = 0.3, waves = [{{ amplitude = 0.03, rad_per_s = 20 }}] }}]\n[reference.tracking]\nroots_per_s = [1.0, 2.0]\n\
+             [law.known]\ndamping.gain = 2\n"
+        );
+        let setup = read_scenario("a loop", &SourceText::new("loop.toml", &scenario), None).unwrap().setup;
+        along(&setup, &run(&setup).unwrap().recording).power.unwrap().bound.unwrap().held_w
+    };
+    let (short, long) = (held_w(20), held_w(300));
+    assert!((0.8..1.5).contains(&(long / short)), "{short:e} {long:e}");
+}
+
 /// Until the first torque comes an arm falls; and a filter that begins with zero was unknown to the bound along a run.
 #[test]
 fn regress_bounds_of_power_know_of_late_first_torques_and_of_filters_that_begin_with_zero() {

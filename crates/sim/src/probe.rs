@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::closed_loop;
-use crate::setup::{AxisUnit, RobotSetup};
+use crate::setup::{Axis, AxisUnit, RobotSetup};
 
 pub use closed_loop::{probe_balance, probe_reference, singular_start};
 
@@ -135,8 +135,7 @@ where
     for _ in 0..STATES {
         let [mut q, dq] = draws.units(m);
         for (q, axis) in q.iter_mut().zip(&robot.axes) {
-            let free = if axis.unit == AxisUnit::Radian { std::f64::consts::PI } else { 2.0 };
-            let [low, high] = axis.position_limits.unwrap_or([-free, free]);
+            let [low, high] = ends(axis);
             *q = 0.5 * (low + high) + 0.5 * (high - low) * *q;
         }
         let here = Here { kernel, theta: &robot.theta, q, dq };
@@ -152,6 +151,14 @@ where
         }
     }
     Ok(probe)
+}
+
+/// Between what positions an axis is tried: within its limits, and not so far from zero that a position has too few digits for differences.
+fn ends(axis: &Axis) -> [f64; 2] {
+    let free = if axis.unit == AxisUnit::Radian { std::f64::consts::PI } else { 2.0 };
+    let Some([low, high]) = axis.position_limits else { return [-free, free] };
+    let (near, far) = (0.0_f64.max(low).min(high), 10.0 * free);
+    [low.max(near - far), high.min(near + far)]
 }
 
 /// What became of a state.

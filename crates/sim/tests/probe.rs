@@ -174,6 +174,25 @@ fn every_property_that_a_robot_lacks_is_found() {
     }
 }
 
+/// A limit on one side alone made every position infinite, and nothing was tried; one that is far away left differences without digits.
+#[test]
+fn regress_axes_are_tried_whatever_their_limits_are() {
+    use std::f64::{INFINITY, MAX, NEG_INFINITY};
+    for limits in
+        [[0.5, INFINITY], [NEG_INFINITY, -0.5], [NEG_INFINITY, INFINITY], [-0.5, 0.5], [-1e9, 1e9], [-MAX, MAX]]
+    {
+        let mut robot = spoilt(None);
+        robot.axes[2].position_limits = Some(limits);
+        let tried = robot.kind.lagrangian().unwrap().probe(&robot).unwrap();
+        assert_eq!((tried.states, tried.found), (STATES, None), "{limits:?}");
+        let mut robot = spoilt(Some(Identity::Skew));
+        robot.axes[2].position_limits = Some(limits);
+        let found = robot.kind.lagrangian().unwrap().probe(&robot).unwrap().found;
+        let [low, high] = limits;
+        assert!(found.is_some_and(|found| (low..=high).contains(&found.state[2])), "{limits:?}");
+    }
+}
+
 #[test]
 fn a_robot_with_the_wrong_number_of_parameters_or_axes_is_an_error() {
     let mut robot = spoilt(None);

@@ -24,6 +24,8 @@ pub struct AgreementBound {
     pub expected: bool,
     /// Whether controllers sample, and with them the references.
     pub sampled: bool,
+    /// Whether positions are read with noise or in steps, which references hear whatever s is.
+    pub inexact: bool,
     /// Whether velocities are measured under digital control, so that an error of them may stay.
     pub measured: bool,
 }
@@ -61,6 +63,7 @@ impl AgreementBound {
             axes,
             expected: power.is_some_and(PowerBound::is_expected),
             sampled: setup.control.is_some(),
+            inexact: sensors.is_some_and(|sensors| sensors.position_noise > 0.0 || sensors.position_quantum > 0.0),
             measured: sensors.is_some_and(|sensors| sensors.velocity == VelocitySensor::Measured),
         })
     }

@@ -159,13 +159,8 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         start_j = start_j.zip(energy_j).map(|(all, own)| all + own);
         noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
         steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
-        let state = |&row: &usize| {
-            let signal = |signal| columns.at(agent, signal, axes, row);
-            let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
-            Some(Led { agent, t_s: t_s[row], q: q?, dq: dq?, dz: dz?, has_sign: true })
-        };
-        let way: Vec<Led> =
-            close_rows(columns, rows, [agent, axes], setup.agents.len()).iter().filter_map(state).collect();
+        let close = close_rows(columns, rows, [agent, axes], setup.agents.len());
+        let way: Vec<Led> = close.iter().filter_map(|row| Led::recorded(columns, t_s, [agent, axes], *row)).collect();
         let way: Vec<&Led> = way.iter().collect();
         let own = &setup.agents[agent];
         held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;

@@ -32,9 +32,21 @@ pub(super) struct Led {
     pub(super) dz: Vec<f64>,
     /// Whether the sign of a reference that follows a leader is in ż.
     pub(super) has_sign: bool,
+    /// Where it is a moment later, which tells how fast all of it changes: the next state of a way may be far.
+    pub(super) soon: Option<Box<Led>>,
 }
 
 impl Led {
+    /// The state of an agent with so many axes in a row, where that has all that is needed.
+    pub(super) fn recorded(columns: &Columns<'_>, t_s: &[f64], [agent, axes]: [usize; 2], row: usize) -> Option<Led> {
+        let state = |row: usize| {
+            let signal = |signal| columns.at(agent, signal, axes, row);
+            let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
+            Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz?, has_sign: true, soon: None })
+        };
+        Some(Led { soon: state(row + 1).map(Box::new), ..state(row)? })
+    }
+
     /// The setup as it would start if its agent were here.
     pub(super) fn put_into(&self, setup: &Setup) -> Setup {
         let mut there = setup.clone();
@@ -86,6 +98,7 @@ fn states(setup: &Setup, agents: &[usize], pace: Pace) -> Vec<Led> {
     };
     let columns = alone.as_ref().map(|recording| (Columns::of(recording), &recording.t_s));
     let end_s = setup.time.end_s;
+    let step_s = setup.control.as_ref().map(|control| 1.0 / control.sample_hz);
     let mut found = Vec::new();
     for &agent in agents {
         let own = &setup.agents[agent];
@@ -100,20 +113,26 @@ fn states(setup: &Setup, agents: &[usize], pace: Pace) -> Vec<Led> {
         let reached_s = found.last().filter(|led| led.agent == agent).map_or(f64::NEG_INFINITY, |led| led.t_s);
         let motion = motion.filter(|motion| motion.axes() == axes);
         found.extend(
-            motion.iter().flat_map(|motion| along(motion, agent, end_s, rows)).filter(|led| led.t_s > reached_s),
+            motion
+                .iter()
+                .flat_map(|motion| along(motion, agent, end_s, rows, step_s))
+                .filter(|led| led.t_s > reached_s),
         );
     }
     found
 }
 
-/// A motion at `each` times up to the end.
-fn along(motion: &Trajectory, agent: usize, end_s: f64, each: usize) -> impl Iterator<Item = Led> {
+/// A motion at `each` times up to the end, and so much later.
+fn along(motion: &Trajectory, agent: usize, end_s: f64, each: usize, step_s: Option<f64>) -> impl Iterator<Item = Led> {
     let mut jets = vec![Jet::default(); motion.axes()];
-    (0..each).map(move |step| {
-        let t_s = end_s * step as f64 / (each - 1) as f64;
+    let mut state = move |t_s: f64| {
         motion.jets(t_s, &mut jets);
         let derivative = |r: usize| jets.iter().map(|jet| jet[r]).collect();
-        Led { agent, t_s, q: derivative(0), dq: derivative(1), dz: derivative(2), has_sign: false }
+        Led { agent, t_s, q: derivative(0), dq: derivative(1), dz: derivative(2), has_sign: false, soon: None }
+    };
+    (0..each).map(move |step| {
+        let t_s = end_s * step as f64 / (each - 1) as f64;
+        Led { soon: step_s.map(|step_s| Box::new(state(t_s + step_s))), ..state(t_s) }
     })
 }
 
@@ -125,12 +144,7 @@ fn recorded(columns: &Columns<'_>, t_s: &[f64], [agent, axes]: [usize; 2], each:
         Pace::Close => busy(columns, t_s.len(), [agent, axes], each),
     };
     rows.dedup();
-    let state = |row: usize| {
-        let signal = |signal| columns.at(agent, signal, axes, row);
-        let [q, dq, dz] = [Signal::Position, Signal::Velocity, Signal::Reference(1)].map(signal);
-        Some(Led { agent, t_s: *t_s.get(row)?, q: q?, dq: dq?, dz: dz?, has_sign: true })
-    };
-    rows.into_iter().filter_map(state).collect()
+    rows.into_iter().filter_map(|row| Led::recorded(columns, t_s, [agent, axes], row)).collect()
 }
 
 /// Rows of one of so many agents that are close enough for integrals.

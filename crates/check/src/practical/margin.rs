@@ -213,7 +213,7 @@ fn looked(setup: &Setup, way: &[Led]) -> Vec<Looked> {
         let at = if at_start { At::Start } else { At::Rest };
         look(agent, resting(setup, agent, q, at_start), at);
     });
-    for Led { agent, t_s, q, dq, dz, has_sign } in way {
+    for Led { agent, t_s, q, dq, dz, has_sign, .. } in way {
         let jumps = if *has_sign { 0.0 } else { sign(setup, *agent) };
         let dz: Vec<f64> = dz.iter().map(|dz| dz + jumps.copysign(*dz)).collect();
         look(*agent, dynamics(&setup.agents[*agent], q, dq, &dz), At::Led { t_s: *t_s });

@@ -18,7 +18,8 @@
 //!
 //! A torque that is held is that of its sample, δ h late, while the motion asks for w = M ż + C z + g as it is now: over a period
 //! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
-//! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest. It begins with
+//! ℓ = h (½ + 1/(e^(ωh) − 1)) ago, n = −ℓ q̈. Both are worked out along the references with s ≡ 0, q̈ = ż, and vanish at rest; ẇ
+//! is that of a moment at each of the states that are looked at, which may be farther from each other than a motion takes to swing. A filter begins with
 //! zero, so that at sample k it still lacks e^(−ωh k) q̇(0): over the span T the mean of nᵀKn is h q̇(0)ᵀK q̇(0)/((1 − e^(−2ωh)) T). Until the
 //! first torque comes, δ h after the start, all of w is missing: d = −w, whose mean square is δ h wᵀK⁻¹w/T.
 //!
@@ -44,6 +45,7 @@ use super::led::Led;
 use super::margin::SamplingMargin;
 use super::rates::{Gains, dynamics};
 use crate::kinds::is_lagrangian;
+use crate::late_leader::sign_lags;
 use crate::surroundings::dry_loss_w;
 
 /// Mean square of what rounding to multiples of one does to what moves over many of them.
@@ -90,13 +92,15 @@ pub fn mean_power_w(drive_w: f64, supply_w: f64, start_w: f64, sigma: f64) -> f6
 
 impl PowerBound {
     /// Over the whole run of a setup with its sampling margin and states on the way of its agents; `None` where there is nothing that feeds V but its start, or where V(0), a
-    /// push or σ is not known before the run.
+    /// push, what a sign that lags does, or σ is not known before the run.
     pub(super) fn on(
         setup: &Setup,
         margin: Option<&SamplingMargin>,
         way: impl FnOnce() -> Vec<Led>,
     ) -> Option<PowerBound> {
-        if !is_fed(setup) {
+        // A sign that lags drives references with more than they ask for by themselves.
+        let lags = setup.following().is_some_and(|following| sign_lags(setup, following));
+        if lags || !is_fed(setup) {
             return None;
         }
         let way = way();
@@ -197,13 +201,22 @@ pub(super) fn held_w_of(
         let theta = DVector::from_column_slice(&agent.robot.theta);
         Some(DMatrix::from_row_slice(state.q.len(), theta.len(), &found.regressor) * theta)
     };
-    let mut held = 0.0;
-    for pair in way.windows(2) {
-        let [one, next] = pair else { continue };
-        let took_s = next.t_s - one.t_s;
-        let Some((from, to)) = asked(one).zip(asked(next)).filter(|_| took_s > 0.0) else { continue };
-        let rate = (to - from) / took_s;
-        held += took_s * since * rate.dot(&(&compliance * &rate));
+    // ẇᵀK⁻¹ẇ, for the mean of ẇ from one state to a later one.
+    let changes = |(one_s, from): &(f64, DVector<f64>), (later_s, to): &(f64, DVector<f64>)| {
+        let rate = (to - from) / (later_s - one_s);
+        (later_s > one_s).then(|| rate.dot(&(&compliance * &rate)))
+    };
+    let worked_out = |state: &Led| Some((state.t_s, asked(state)?));
+    let (mut held, mut before) = (0.0, None);
+    for state in way {
+        let Some(here) = worked_out(state) else { continue };
+        let now = state.soon.as_ref().and_then(|soon| changes(&here, &worked_out(soon)?));
+        if let Some((last, then)) = &before {
+            // A motion may have swung several times from one state to the next.
+            let largest = [*then, now, changes(last, &here)].into_iter().flatten().fold(0.0, f64::max);
+            held += (here.0 - last.0).max(0.0) * since * largest;
+        }
+        before = Some((here, now));
     }
     let lagging = lag_s * lag_s * mean_acceleration_w_s2(gains, way, span_s);
     let begun = way.first().map_or(0.0, |first| begun_w_of(control, &first.dq, gains, span_s));

@@ -176,7 +176,7 @@ fn agreement(bound: &AgreementBound) -> String {
 }
 
 /// The bounds on s put through the gains.
-fn axes(AgreementBound { axes, expected, sampled, .. }: &AgreementBound) -> String {
+fn axes(AgreementBound { axes, expected, sampled, inexact, .. }: &AgreementBound) -> String {
     let Some([least, most]) = axes else {
         return "how large s is cannot be told before the run; ".into();
     };
@@ -200,7 +200,11 @@ fn axes(AgreementBound { axes, expected, sampled, .. }: &AgreementBound) -> Stri
     } else {
         format!("{}, {}", one(least), one(most))
     };
-    let beside = if *sampled { "references that are sampled leave with s = 0" } else { "s = 0 leaves" };
+    let beside = match (*sampled, *inexact) {
+        (_, true) => "references that are sampled, and hear positions with errors, leave with s = 0",
+        (true, false) => "references that are sampled leave with s = 0",
+        (false, false) => "s = 0 leaves",
+    };
     format!("beside what {beside} there {kind}{both}; ")
 }
 

@@ -10,9 +10,9 @@ use super::swarm;
 use crate::certificate::closer_drive_bound;
 use crate::graphs::{dwell_time, fixed_graph, leader_in_every_graph, leader_reaches_all};
 use crate::hypothesis::numbers::rounded_up;
-use crate::hypothesis::{FollowingEvidence, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
+use crate::hypothesis::{Answer, FollowingEvidence, Hypothesis, Id, MotionEvidence, Named, ReferenceEvidence, Subject};
 use crate::kinds::{is_lagrangian, starts_from_zero};
-use crate::late_leader::{behind, held};
+use crate::late_leader::{behind, held, sign_lags};
 use crate::links::{bounded_delays, bounded_weights, constant_weights, is_late, no_delay};
 use crate::report::Report;
 use crate::surroundings::{acts, dry_loss_w, ends_s};
@@ -103,7 +103,9 @@ pub(super) fn check(setup: &Setup, following: &Following) -> Report {
     let promises = match over {
         Over::Fixed | Over::Turns => format!("everybody follows {leader}: qᵢ − q₀ → 0 and q̇ᵢ − q̇₀ → 0; {torque}"),
         Over::Late => {
-            let near = match behind(setup, following) {
+            // Where γ may be too small nothing comes that near.
+            let drives = hypotheses.iter().any(|own| own.id == Id::SignGain && own.answer() == Answer::Holds);
+            let near = match behind(setup, following).filter(|_| drives) {
                 Some(bound) => {
                     format!("in the end no |qᵢ − q₀| exceeds {}", rounded_up(bound * swing(following)))
                 }
@@ -225,15 +227,18 @@ fn sign(setup: &Setup, following: &Following) -> Hypothesis {
         | FollowingDesign::Composite
         | FollowingDesign::Swarm { .. } => (following.alpha * swing).sqrt(),
     };
+    let lags = sign_lags(setup, following);
     // Signs that are set at once with their neighbours' leave no more of many than of one.
-    let left = if sampled || is_late(setup) {
+    let left = if lags {
+        f64::INFINITY
+    } else if sampled || is_late(setup) {
         held(setup, following).unwrap_or(f64::INFINITY) * swing
     } else {
         period_s * following.drive_bound(None) / following.alpha * swing
     };
     let (end_s, scale) = (setup.time.end_s, scale(setup, following));
     let (choice, rate_per_s) = (following.choice, alpha_per_s);
-    let evidence = FollowingEvidence::Sign { choice, sampled, period_s, rate_per_s, left, scale, end_s };
+    let evidence = FollowingEvidence::Sign { choice, sampled, lags, period_s, rate_per_s, left, scale, end_s };
     Hypothesis::new(Id::SetValuedSign, evidence)
 }
 

@@ -51,6 +51,14 @@ fn prop_with_delays_on_a_fixed_graph_what_may_be_left_is_said() {
     // Controllers that sample hear a period later, and hold their signs for a period: two and a half of them for each link.
     let sampled = check(&ring.clone().sampled(100.0));
     assert!(sampled.promises.contains("exceeds 1.789"), "{}", sampled.promises);
+    // With a γ that is too small nobody comes so near, and nothing is known of signs that see too late what they did.
+    let mut weak = ring.clone();
+    assert!(weak.change_reference(|following: &mut Following| following.gain = 2.0));
+    let mut lagging = ring.sampled(100.0);
+    lagging.control.as_mut().unwrap().computation_delay_s = 0.01;
+    for report in [check(&weak), check(&lagging)] {
+        assert!(report.promises.contains("within a bound in proportion"), "{}", report.promises);
+    }
 }
 
 /// A path of masses behind a leader that moves steadily, from rest at its place, and how far the last one is from it in the end.

@@ -77,7 +77,7 @@ fn shrunk(mut case: Case, mut failure: Failure) -> (Case, Failure) {
     }
 }
 
-/// The same words for whichever agent and place: every number becomes `#`, but for those of equations, which are in brackets.
+/// The same words for whichever agent and place: every number becomes `…`, but for those of equations, which are in brackets.
 fn without_numbers(reason: &str) -> String {
     let mut found = String::with_capacity(reason.len());
     let mut is_equation = false;
@@ -85,8 +85,8 @@ fn without_numbers(reason: &str) -> String {
         is_equation = c == '(' || is_equation && c != ')' && c != ' ';
         match c {
             '0'..='9' if is_equation => found.push(c),
-            '0'..='9' if found.ends_with('#') => {}
-            '0'..='9' => found.push('#'),
+            '0'..='9' if found.ends_with('…') => {}
+            '0'..='9' => found.push('…'),
             c => found.push(c),
         }
     }
@@ -233,10 +233,10 @@ mod tests {
 
     #[test]
     fn reasons_are_counted_whatever_their_numbers_are() {
-        assert_eq!(without_numbers("agent 12 at 3.5 s"), "agent # at #.# s");
+        assert_eq!(without_numbers("agent 12 at 3.5 s"), "agent … at ….… s");
         assert_eq!(
             without_numbers("2 weights vary under (119) or (122), 3 do not"),
-            "# weights vary under (119) or (122), # do not"
+            "… weights vary under (119) or (122), … do not"
         );
     }
 }

@@ -61,10 +61,13 @@ const limitLines = (axis, read, label) => {
 };
 const both = (v) => (v == null ? [] : [v, -v]);
 
+// Ships and masses have no joints.
+const jointWord = index.scene.arms.length === 0 ? "axis" : "joint";
+
 // The joints of which something is drawn.
 const jointPick = (columnsOf) => ({
   id: "joint",
-  name: "joint",
+  name: jointWord,
   options: (picks) => {
     const columns = columnsOf(picks) ?? [];
     return joints.filter((j) => columns.some((axes) => axes?.[j.axis] != null)).map((j) => [String(j.axis), j.name]);

@@ -210,8 +210,7 @@ const showAgents = () => {
 const joint = document.getElementById("joint");
 for (const j of joints) joint.append(element("option", { value: String(j.axis), textContent: j.name }));
 document.getElementById("joint-label").hidden = joints.length < 2;
-// Ships and masses have no joints.
-if (scene.arms.length === 0) document.getElementById("joint-label").firstChild.textContent = "Axis ";
+if (jointWord === "axis") document.getElementById("joint-label").firstChild.textContent = "Axis ";
 joint.onchange = () => {
   for (const card of all) {
     const picks = cards[card.dataset.plot]?.picks ?? [];

@@ -49,12 +49,14 @@ pub enum FollowingEvidence {
         choice: Choice,
         /// Whether sampled controllers do it, at every sample.
         sampled: bool,
+        /// Whether it reads motions that show what it did only later: torques come late, or velocities are filtered.
+        lags: bool,
         /// How often, s.
         period_s: f64,
         /// How fast q_i − q_0 follows what the sign brings to zero: α of (110), else the mean of the two roots, 1/s;
         /// larger for complex ones, whose response swings.
         rate_per_s: f64,
-        /// About what stays of q_i − q_0, in units of the axes; infinite where no bound of ξ̇₀ is known.
+        /// About what stays of q_i − q_0, in units of the axes; infinite where no bound of ξ̇₀ is known, or the sign lags.
         left: f64,
         /// How far a leader whose motion is given moves on this run, or agents start away from it, whichever is more; else infinity.
         scale: f64,
@@ -105,7 +107,8 @@ impl FollowingEvidence {
             FollowingEvidence::GainOverAgent { .. } => Answer::Watched,
             // It has no witness: it fails once the leader has arrived, which is promised and not shown.
             FollowingEvidence::GainOverTarget { .. } => Answer::NotShown,
-            FollowingEvidence::Sign { choice, period_s, rate_per_s, left, scale, end_s, .. } => match choice {
+            FollowingEvidence::Sign { choice, lags, period_s, rate_per_s, left, scale, end_s, .. } => match choice {
+                Choice::Implicit if *lags => Answer::NotCovered,
                 Choice::Implicit if period_s * rate_per_s > MOST_HELD || period_s >= end_s => Answer::NotCovered,
                 // Where no bound is known nothing is shown of the gain either.
                 Choice::Implicit if left.is_finite() && *left > MOST_LEFT * scale => Answer::NotCovered,

@@ -35,12 +35,16 @@ pub(super) fn words(evidence: &FollowingEvidence) -> String {
                 rounded(*t_s)
             )
         }
-        FollowingEvidence::Sign { choice, sampled, period_s, left, scale, end_s, .. } => {
+        FollowingEvidence::Sign { choice, sampled, lags, period_s, left, scale, end_s, .. } => {
             let every = match sampled {
                 false => format!("every {} s", seconds(*period_s)),
                 true => "at every sample".to_owned(),
             };
             match choice {
+                Choice::Implicit if *lags => format!(
+                    "a value of it is solved for {every}, from motions that show what it did only later, as torques come late or velocities are \
+                     filtered: it chatters, with all of γ, and how much of qᵢ − q₀ that leaves is not known"
+                ),
                 Choice::Implicit => format!("a value of it is solved for {every}{}", held(*left, *scale, *period_s >= *end_s)),
                 Choice::Explicit => format!("it is set to 1 or −1 {every}, and chatters at that rate"),
                 Choice::Layer { width } => {

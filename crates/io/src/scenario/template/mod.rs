@@ -124,7 +124,10 @@ impl Template {
 
     fn agents(&self) -> String {
         let (RobotTemplate { name, line, says, .. }, count) = (&self.robot, self.agents);
-        let count = commented(&format!("count = {count}"), &format!("{name}-1 … {name}-{count}"));
+        let count = commented(
+            &format!("count = {count}"),
+            &if count == 1 { format!("{name}-1") } else { format!("{name}-1 … {name}-{count}") },
+        );
         let (robot, start) = (commented(line, says), self.robot.start());
         format!(
             "# Robots of one kind; write [[agents]] again for others, which need as many axes.\n\

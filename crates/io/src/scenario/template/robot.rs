@@ -201,7 +201,13 @@ impl RobotTemplate {
 
 /// Where an axis starts: within 1 rad or m of zero, and well within its limits.
 fn start_within(limits: Option<[f64; 2]>) -> [f64; 2] {
-    let Some([low, high]) = limits.filter(|[low, high]| (high - low).is_finite() && high > low) else {
+    // One that is limited on one side starts near that.
+    let near = |[low, high]: [f64; 2]| match [low.is_finite(), high.is_finite()] {
+        [true, false] => [low, low + 4.0 * WIDEST_START],
+        [false, true] => [high - 4.0 * WIDEST_START, high],
+        _ => [low, high],
+    };
+    let Some([low, high]) = limits.map(near).filter(|[low, high]| (high - low).is_finite() && high > low) else {
         return [-WIDEST_START, WIDEST_START];
     };
     let range = high - low;
@@ -230,7 +236,9 @@ mod tests {
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-4), "{limits:?}: {found:?}");
         };
         is(None, [-1.0, 1.0]);
-        is(Some([f64::NEG_INFINITY, 1.0]), [-1.0, 1.0]);
+        is(Some([f64::NEG_INFINITY, f64::INFINITY]), [-1.0, 1.0]);
+        is(Some([f64::NEG_INFINITY, 1.0]), [-1.6, 0.4]);
+        is(Some([0.5, f64::INFINITY]), [1.1, 3.1]);
         is(Some([2.0, 2.0]), [-1.0, 1.0]);
         is(Some([-6.2, 6.2]), [-1.0, 1.0]);
         // The fourth and the sixth joint of a Panda, and a finger.

@@ -220,7 +220,12 @@ fn following(evidence: &FollowingEvidence) -> Option<String> {
             format!("γ above what drives the leader, which along its target is at least {}", rounded_down(*seen))
         }
         FollowingEvidence::GainOverAgent { .. } => "a leader whose motion is given before the run".into(),
-        FollowingEvidence::Sign { choice, sampled, period_s, rate_per_s, left, scale, end_s } => match choice {
+        FollowingEvidence::Sign { lags: true, choice: Choice::Implicit, .. } => {
+            "velocities that are measured and torques that come at once; or, as a `design` whose sign reads no motion, \"observer\" in the place of \
+             \"continuous\" and \"without_acceleration\" in that of \"differentiable\""
+                .into()
+        }
+        FollowingEvidence::Sign { choice, sampled, period_s, rate_per_s, left, scale, end_s, .. } => match choice {
             Choice::Implicit => {
                 // What is left is in proportion to the period.
                 let small_s = if left.is_finite() { period_s * MOST_LEFT * scale / left } else { f64::INFINITY };
