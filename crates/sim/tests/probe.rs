@@ -177,9 +177,9 @@ fn every_property_that_a_robot_lacks_is_found() {
 /// A limit on one side alone made every position infinite, and nothing was tried; one that is far away left differences without digits.
 #[test]
 fn regress_axes_are_tried_whatever_their_limits_are() {
-    use std::f64::{INFINITY, MAX, NEG_INFINITY};
+    const ENDLESS: f64 = f64::INFINITY;
     for limits in
-        [[0.5, INFINITY], [NEG_INFINITY, -0.5], [NEG_INFINITY, INFINITY], [-0.5, 0.5], [-1e9, 1e9], [-MAX, MAX]]
+        [[0.5, ENDLESS], [-ENDLESS, -0.5], [-ENDLESS, ENDLESS], [-0.5, 0.5], [-1e9, 1e9], [f64::MIN, f64::MAX]]
     {
         let mut robot = spoilt(None);
         robot.axes[2].position_limits = Some(limits);
