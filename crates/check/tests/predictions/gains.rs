@@ -13,7 +13,7 @@ use forwardstep_sim::graph::Edge;
 use forwardstep_sim::push::{Course, Effect, Function, Push};
 use forwardstep_sim::reference::{Backstepping, PureIntegral};
 use forwardstep_sim::schedule::{Logged, Phase, Schedule};
-use forwardstep_sim::{Control, Exchange, Known, Method, Setup, Signal, Solver};
+use forwardstep_sim::{Control, Exchange, Known, Method, Sensors, Setup, Signal, Solver};
 
 use super::two_arms;
 use crate::common::kinds::{blind_mass, chain};
@@ -324,7 +324,19 @@ fn what_s_adds_is_said_with_its_numbers() {
     let [least, most] = bound(&uneven).unwrap().axes.unwrap();
     assert!(is_near(most.tracking, (power_w.unwrap() / 4.0).sqrt(), 1e-12), "{most:?} {power_w:?}");
     assert!(is_near(least.tracking, most.tracking / 1.5, 1e-12) && least.name != most.name, "{least:?} {most:?}");
-    let sampled = said(&setup.clone().sampled(500.0)).unwrap().2;
+    let sampled = setup.clone().sampled(500.0);
+    let (_, text, _) = said(&sampled).unwrap();
+    assert!(text.starts_with("beside what references that are sampled leave with s = 0 there is "), "{text}");
+    // Positions that are rounded, or have noise, are heard by references too.
+    let inexact: [fn(&mut Sensors); 2] =
+        [|sensors| sensors.position_quantum = 1e-3, |sensors| sensors.position_noise = 1e-3];
+    for change in inexact {
+        let mut setup = sampled.clone();
+        change(&mut setup.control.as_mut().unwrap().sensors);
+        let (_, text, _) = said(&setup).unwrap();
+        assert!(text.contains("sampled, and hear positions with errors, leave with s = 0 "), "{text}");
+    }
+    let sampled = said(&sampled).unwrap().2;
     assert!(sampled.iter().any(|(name, bias)| *name == "drift_by_velocity_error" && *bias < 0.0), "{sampled:?}");
     assert_eq!(bound(&ring(3, 1, Exchange::Position, 0.0)), None, "nothing feeds s");
     let mut three = ring(3, 1, Exchange::Position, 0.0);
