@@ -273,3 +273,13 @@ disagreement_below = 1e-4
     let said = stdout(&forwardstep(&folder, &["run", "turns.toml"]).code(1));
     assert!(said.contains("comes closer unevenly; try `time.end_s = "), "{said}");
 }
+
+/// What ten samples a second leave of a target that tumbles swings with it, and a time was advised as if that fell.
+#[test]
+fn regress_what_samples_leave_of_a_motion_is_not_waited_for_alone() {
+    let folder = folder();
+    let text = stdout(&forwardstep(&folder, &["scenarios", "tumbling-target"]).success());
+    fs::write(folder.path().join("t.toml"), text.replacen("[time]", "[control]\nsample_hz = 10\n\n[time]", 1)).unwrap();
+    let said = stdout(&forwardstep(&folder, &["run", "t.toml", "--out", "out"]).code(1));
+    assert!(said.contains("run longer, or sample faster: it comes closer unevenly"), "{said}");
+}

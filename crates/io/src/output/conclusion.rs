@@ -257,6 +257,11 @@ struct Pace {
     passes: bool,
 }
 
+/// Whether an error stays since controllers hold what they ask for while a target or a leader moves on.
+fn samples_leave(setup: &Setup) -> bool {
+    setup.control.is_some() && (setup.all_track() || setup.leader().is_some())
+}
+
 /// What to change: `share` of the gap is what may be left. With its trend comes whether that slows down.
 fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> Vec<String> {
     let Pace { trend, slows, steadily, passes } = pace;
@@ -279,6 +284,10 @@ fn advice(record: &RunRecord<'_>, metrics: &Metrics, pace: Pace, share: f64) -> 
                 "run longer, and record more often: how long a gap takes that swings through zero cannot be told from its end".into()
             } else if slows {
                 format!("run longer: it comes closer more and more slowly; try `time.end_s = {end_s}`")
+            } else if !steadily && samples_leave(record.setup) {
+                format!(
+                    "run longer, or sample faster: it comes closer unevenly, and may come no closer than samples let it; try `time.end_s = {end_s}`"
+                )
             } else if !steadily {
                 format!("run longer: it comes closer unevenly; try `time.end_s = {end_s}`")
             } else {
