@@ -1018,8 +1018,8 @@ class Scenario:
 
     # Whether the torque that a law asks for may not be applied.
     def limited(self):
-        steps = exact(table((self.control or {}).get("quantisation", {}), "quantisation").get("torque", 0), "torque")
-        return steps != 0 or {"torque_limit", "torque_rate_limit_per_s"} & {*(self.control or {})} or any(a.enforced for a in self.agents)
+        c, steps = self.control or {}, exact(table((self.control or {}).get("quantisation", {}), "quantisation").get("torque", 0), "torque")
+        return steps or {"torque_limit", "torque_rate_limit_per_s"} & {*c} or any(a.enforced or "rotors" in a.body for a in self.agents)
 
     # [from, to, phase] of the certificate as numbers; None for who is unknown.
     def triple(self, node):

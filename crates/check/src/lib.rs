@@ -44,7 +44,7 @@ pub use practical::{
     AgreementBound, Along, AxisBound, ClippedCommands, FastestDamping, Finding, Hold, Injection, InjectionBalance,
     InjectionCourse, InjectionWatch, LoadReached, LoopAlong, LoopAt, LoopRate, MarginAt, MarginReached, NAMED_SHARE,
     NoReferenceGains, Over, PowerBound, PowerReached, Practical, PracticalAnswer, RECOMMENDED_MARGIN, ReferenceGains,
-    SamplingMargin, StaticLoad, Trial, WholeLoop, along, fastest_damping, mean_power_w, practical,
+    SamplingMargin, StaticLoad, Swing, Trial, WholeLoop, along, fastest_damping, mean_power_w, practical,
 };
 pub use prediction::{Course, NoCourse, NoIdeal, course, ideal};
 pub use report::Report;

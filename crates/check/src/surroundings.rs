@@ -7,7 +7,7 @@ use forwardstep_sim::{AgentSetup, Setup, VelocitySensor};
 
 use crate::certificate::fades;
 use crate::hypothesis::{Hypothesis, Id, Inexact, Limited, LoopEvidence, Named};
-use crate::kinds::is_lagrangian;
+use crate::kinds::{is_lagrangian, rotors_of};
 use crate::links::messages_in_time;
 
 /// What every theorem asks of what surrounds its law.
@@ -108,7 +108,7 @@ pub(crate) fn ends_s(push: &Push) -> f64 {
 /// What keeps the torque from being what the law asks for.
 fn applied_torque(setup: &Setup) -> Hypothesis {
     let enforced: Vec<usize> = (0..setup.agents.len()).filter(|agent| setup.agents[*agent].enforce_limits).collect();
-    let limited = setup.control.as_ref().map_or_else(Vec::new, |control| {
+    let mut limited = setup.control.as_ref().map_or_else(Vec::new, |control| {
         let actuators = &control.actuators;
         let each = [
             (actuators.torque_limit.is_some(), Limited::Torque),
@@ -117,6 +117,9 @@ fn applied_torque(setup: &Setup) -> Hypothesis {
         ];
         each.into_iter().filter(|(is, _)| *is).map(|(_, limited)| limited).collect()
     });
+    if setup.agents.iter().any(|agent| rotors_of(agent).is_some()) {
+        limited.push(Limited::Thrust);
+    }
     let evidence = LoopEvidence::Applied { limited, enforced: Named::all(setup, &enforced) };
     Hypothesis::new(Id::AppliedTorque, evidence)
 }

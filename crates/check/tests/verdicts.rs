@@ -295,6 +295,9 @@ fn vehicles_are_told_apart_from_rotorcraft() {
     assert_eq!(answers(&check(&both), About::ThrustGains), [Answer::Holds]);
     let rotors = Rotors { offset: 0.15, drag: 0.02, thrust: [0.2, 8.0] };
     assert_eq!(answer(&craft(Some(rotors)), About::Rotors), Answer::NotCovered);
+    // Their limits cut off what is asked for, whether or not those of others are only reported.
+    assert_eq!(answer(&craft(None), About::FullTorque), Answer::Holds);
+    assert_eq!(answer(&craft(Some(rotors)), About::FullTorque), Answer::NotCovered);
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub(crate) use lagrangian::{LagrangianRobot, is_lagrangian, starts_from_zero};
 pub(crate) use model_reference::ModelledMass;
 pub(crate) use passivity_filter::FilteredSpacecraft;
 pub(crate) use point_mass::PositionOnlyMass;
-pub(crate) use rotorcraft::Rotorcraft;
+pub(crate) use rotorcraft::{Rotorcraft, rotors_of};
 pub(crate) use spacecraft::Spacecraft;
 pub(crate) use task_space::TaskSpaceRobot;
 pub(crate) use vehicle::{Vehicle, is_its_own_reference};

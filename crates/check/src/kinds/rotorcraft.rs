@@ -56,6 +56,7 @@ fn rotors(setup: &Setup, agents: &[usize]) -> Option<Hypothesis> {
     })
 }
 
-fn rotors_of(agent: &AgentSetup) -> Option<&Rotors> {
+/// The rotors that an agent flies with.
+pub(crate) fn rotors_of(agent: &AgentSetup) -> Option<&Rotors> {
     agent.robot.kind.downcast::<RotorcraftModel>()?.rotors.as_ref()
 }

@@ -13,8 +13,11 @@ use super::held::Hold;
 use super::led::{Led, close_rows};
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
-use super::power::{PowerBound, between_w_of, held_w_of, is_fed, noise_w_of, pushed_w, steps_w_of};
+use super::power::{
+    PowerBound, between_w_of, held_w_of, is_fed, is_white, noise_w_of, positions_w_of, pushed_w, steps_w_of,
+};
 use super::rates::{Gains, Rates};
+use super::resonance::Swing;
 use crate::kinds::is_lagrangian;
 use crate::surroundings::dry_loss_w;
 
@@ -57,6 +60,8 @@ pub struct MarginReached {
     pub t_s: f64,
     /// σ.
     pub sigma: f64,
+    /// The fastest mode there, 1/s.
+    pub fastest_per_s: f64,
 }
 
 /// The static torque that came closest to its limit.
@@ -110,7 +115,8 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
             {
                 let sigma = rates.sigma(hold, period_s);
                 if found.margin.is_none_or(|worst| sigma > worst.sigma) {
-                    found.margin = Some(MarginReached { agent: *agent, t_s, sigma });
+                    let fastest_per_s = rates.damping_per_s;
+                    found.margin = Some(MarginReached { agent: *agent, t_s, sigma, fastest_per_s });
                 }
             }
             if let Some(evaluator) = evaluator
@@ -121,20 +127,24 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
             }
         }
     }
-    let sigma = found.margin.map_or(0.0, |margin| margin.sigma);
-    found.power = power(setup, &columns, &recording.t_s, sigma);
+    let swing = hold
+        .zip(found.margin)
+        .map_or(Swing::NONE, |((hold, period_s), worst)| hold.swing_at(period_s, worst.fastest_per_s, worst.sigma));
+    let grown = (found.margin.map_or(0.0, |margin| margin.sigma), swing);
+    found.power = power(setup, &columns, &recording.t_s, grown);
     found
 }
 
-/// The mean of Σ sᵀKs over all rows, with σ as large as it became.
-fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Option<PowerReached> {
+/// The mean of Σ sᵀKs over all rows, with σ and the swing as large as they became.
+fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], (sigma, swing): (f64, Swing)) -> Option<PowerReached> {
     if !is_fed(setup) {
         return None;
     }
     let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
     let span_s = last_s - first_s;
     let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
-    let (mut noise_w, mut steps_w, mut held_w, mut between_w, mut friction_w) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut noise_w, mut positions_w, mut steps_w, mut held_w) = (0.0, 0.0, 0.0, 0.0);
+    let (mut between_w, mut friction_w) = (0.0, 0.0);
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
         let axes = gains.damping.nrows();
@@ -165,13 +175,29 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], sigma: f64) -> Optio
         let own = &setup.agents[agent];
         held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;
         between_w += setup.control.as_ref().map_or(0.0, |it| between_w_of(it, &gains, &way, span_s));
+        positions_w += positions_w_of(setup, agent, &gains, &way).unwrap_or(0.0);
         agents += 1;
     }
     let parts = |(start_j, push_w): (f64, f64)| {
         let start_w = start_j / span_s;
         let mean_w = f64::NAN;
-        PowerBound { agents, span_s, start_w, push_w, noise_w, steps_w, held_w, between_w, friction_w, sigma, mean_w }
-            .worked_out()
+        let bound = PowerBound {
+            agents,
+            span_s,
+            start_w,
+            push_w,
+            noise_w,
+            positions_w,
+            steps_w,
+            held_w,
+            between_w,
+            friction_w,
+            sigma,
+            swing,
+            is_white: is_white(setup),
+            mean_w,
+        };
+        bound.worked_out()
     };
     (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(parts) })
 }

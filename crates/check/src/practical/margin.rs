@@ -12,6 +12,7 @@ use super::led::{Led, Pace, way};
 use super::looped::degree;
 use super::postures::each_posture;
 use super::rates::{Gains, Rates, dynamics, fastest_damping_of};
+use super::resonance::Swing;
 use crate::hypothesis::Named;
 use crate::inertia::Inertias;
 use crate::kinds::is_lagrangian;
@@ -155,6 +156,12 @@ impl SamplingMargin {
         check_setup(setup).ok()?;
         let looked = looked(setup, &way(setup, Pace::Even));
         if looked.is_empty() { None } else { longest(&looked, near_s, &hold, 1.0) }
+    }
+
+    /// What commands that are late or velocities that are filtered multiply powers by, at most, in the states that were looked at.
+    pub(super) fn swing(&self) -> Swing {
+        let of = |at: &MarginAt| self.hold.swing_at(self.period_s, at.fastest_per_s, at.sigma);
+        of(&self.start).max(of(&self.worst))
     }
 
     /// Which gain makes σ what it is, as it is to be made smaller: `K`, `Γ`, or both.

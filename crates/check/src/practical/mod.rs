@@ -5,6 +5,7 @@
 //! them can make a theorem hold or fail; the exit status of `check` does not depend on them unless it is asked to.
 //!
 //! - `held`: how fast a mode may be under a command that is held, late, or taken from filtered differences.
+//! - `resonance`: by how much such a mode swings up.
 //! - `rates`: how fast the modes of a robot under (6)–(7) are, and what a sample does to V.
 //! - `margin`: the sampling margin σ before a run.
 //! - `led`: states that references lead robots through, at which it looks.
@@ -31,6 +32,7 @@ mod margin;
 mod postures;
 mod power;
 pub(crate) mod rates;
+mod resonance;
 mod words;
 
 use forwardstep_sim::{Adaptive, Setup, check_setup};
@@ -54,6 +56,7 @@ pub use power::{PowerBound, mean_power_w};
 pub(crate) use power::{is_fed, start_energy_j};
 pub use rates::{FastestDamping, fastest_damping};
 pub(crate) use rates::{Gains, fastest_damping_of};
+pub use resonance::Swing;
 
 /// What a practical verdict says, from best to worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -165,10 +168,14 @@ impl Finding {
                 ("start_w", bound.start_w),
                 ("push_w", bound.push_w),
                 ("noise_w", bound.noise_w),
+                ("positions_w", bound.positions_w),
                 ("steps_w", bound.steps_w),
                 ("held_w", bound.held_w),
                 ("between_w", bound.between_w),
                 ("friction_w", bound.friction_w),
+                ("forced_factor", bound.swing.forced),
+                ("started_factor", bound.swing.started),
+                ("noise_factor", bound.swing.noise),
                 ("span_s", bound.span_s),
             ],
             Finding::TrackingDisagreement(bound) => bound.numbers(),

@@ -14,7 +14,8 @@
 //! ```
 //!
 //! For several agents all of it adds up. Sampled, V loses (1 − σ) sᵀKs in place of sᵀKs (`rates`), which is to be put for K throughout:
-//! then x² ≤ (½ D + √(¼ D² + (1 − σ)(E + V(t₀)/T)))² / (1 − σ)².
+//! then x² ≤ (½ D + √(¼ D² + (1 − σ)(E + V(t₀)/T)))² / (1 − σ)². Where commands are late or velocities filtered, V may gain for a while though σ < 1: a
+//! mode swings up by factors that `resonance` works out, for forces, what is left of V(t₀), and noise: the larger of both bounds is taken.
 //!
 //! A torque that is held is that of its sample, δ h late, while the motion asks for w = M ż + C z + g as it is now: over a period
 //! d is off by ẇ times the time since the sample, whose mean square is h² (⅓ + δ + δ²). And a filter gives the velocity of
@@ -32,6 +33,11 @@
 //! whose mean is zero since Y is one sample older. With noise the bound is thus one to be
 //! expected, not one for certain.
 //!
+//! An error ν of positions enters M, C and g: d = w(q + ν) − w(q), to first order ∂w/∂q_j times the error of axis j, independent of the others for noise, and
+//! all of half a step for rounding. What references hear of it makes ż uncertain: by at most f² |ν| and f times the error of a velocity, of both
+//! ends of a link, with f how fast they answer ([`fastest_reference_per_s`](super::margin::fastest_reference_per_s)), which M(q + ν) − M(q) bears, and
+//! between samples the saw tooth does.
+//!
 //! Dry friction F σ, σ ∈ Sgn q̇, which the law takes for F tanh(z/ε), feeds V by κ ε F at every joint at most, κ = max x (1 − tanh x)
 //! ([`SMOOTHING_LOSS`](forwardstep_core::robot::SMOOTHING_LOSS)): E is the sum of these. That of a run holds σ over short periods, and what
 //! that adds vanishes with them.
@@ -42,8 +48,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::held::Hold;
 use super::led::Led;
-use super::margin::SamplingMargin;
+use super::margin::{SamplingMargin, fastest_reference_per_s};
 use super::rates::{Gains, dynamics};
+use super::resonance::Swing;
 use crate::kinds::is_lagrangian;
 use crate::late_leader::sign_lags;
 use crate::surroundings::dry_loss_w;
@@ -52,6 +59,9 @@ use crate::surroundings::dry_loss_w;
 const ROUNDING: f64 = 1.0 / 12.0;
 /// Its largest square, which is that of a velocity that stays within one step: a robot that hardly moves.
 const WITHIN: f64 = 0.25;
+
+/// States of an agent at which errors of positions are tried.
+const POSITIONS: usize = 64;
 
 /// What feeds Σ V of all agents under (6)–(7), and what Σ sᵀKs is at most on the average over a span.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +76,8 @@ pub struct PowerBound {
     pub push_w: f64,
     /// D² of measurement errors, W: expected, not certain.
     pub noise_w: f64,
+    /// D² of M, C and g at positions that are measured with errors, W: expected, not certain.
+    pub positions_w: f64,
     /// D² of torques that come in steps, W.
     pub steps_w: f64,
     /// D² of torques that are held and velocities that are filtered while robots move as their references ask, W.
@@ -76,6 +88,10 @@ pub struct PowerBound {
     pub friction_w: f64,
     /// σ; zero in continuous time.
     pub sigma: f64,
+    /// What commands that are late or velocities that are filtered multiply all this by.
+    pub swing: Swing,
+    /// Whether noise is independent from sample to sample, which rounding is not.
+    pub is_white: bool,
     /// The bound on the mean of Σ sᵀKs, W.
     pub mean_w: f64,
 }
@@ -105,7 +121,7 @@ impl PowerBound {
         }
         let way = way();
         let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
-        let (mut noise_w, mut steps_w, mut held_w, mut between_w) = (0.0, 0.0, 0.0, 0.0);
+        let (mut noise_w, mut positions_w, mut steps_w, mut held_w, mut between_w) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let span_s = setup.time.end_s;
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
@@ -117,9 +133,14 @@ impl PowerBound {
             let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
             held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, agent, &gains, &own, span_s))?;
             between_w += setup.control.as_ref().map_or(0.0, |control| between_w_of(control, &gains, &own, span_s));
+            positions_w += positions_w_of(setup, index, &gains, &own).unwrap_or(0.0);
+            between_w += heard_between_w_of(setup, index, &gains);
             agents += 1;
         }
-        let sigma = if setup.control.is_some() { margin?.worst.sigma } else { 0.0 };
+        let (sigma, swing) = match setup.control {
+            Some(_) => (margin?.worst.sigma, margin?.swing()),
+            None => (0.0, Swing::NONE),
+        };
         let start_w = start_j / span_s;
         let parts = PowerBound {
             agents,
@@ -127,11 +148,14 @@ impl PowerBound {
             start_w,
             push_w,
             noise_w,
+            positions_w,
             steps_w,
             held_w,
             between_w,
             friction_w,
             sigma,
+            swing,
+            is_white: is_white(setup),
             mean_w: f64::NAN,
         };
         (agents > 0).then(|| parts.worked_out()).flatten()
@@ -142,15 +166,36 @@ impl PowerBound {
         self.noise_w > 0.0 || self.sigma > 0.0
     }
 
+    /// x² without σ, of modes that swing up; `others` is D without that of noise.
+    fn swung_w(&self, others: f64) -> f64 {
+        let Swing { forced, started, noise } = self.swing;
+        let noise = if self.is_white { noise } else { forced };
+        let drive = forced.sqrt() * others + (noise * self.noise_w).sqrt();
+        mean_power_w(drive * drive, forced.max(started) * self.friction_w, started * self.start_w, 0.0)
+    }
+
     /// The same with [`PowerBound::mean_w`]: the D of pushes, of noise and of steps add up, at worst. `None` where it is not finite, and where it
     /// is zero: then what is left out is all there is.
     pub(super) fn worked_out(self) -> Option<PowerBound> {
-        let drive = self.push_w.sqrt() + self.noise_w.sqrt() + self.steps_w.sqrt() + self.held_w.sqrt();
-        let sampled_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma);
+        let others = [self.push_w, self.positions_w, self.steps_w, self.held_w].into_iter().map(f64::sqrt).sum::<f64>();
+        let drive = others + self.noise_w.sqrt();
+        let swung = self.swung_w(others);
+        let sampled_w = mean_power_w(drive * drive, self.friction_w, self.start_w, self.sigma).max(swung);
         let root = sampled_w.sqrt() + self.between_w.sqrt();
         let mean_w = root * root;
         (mean_w > 0.0 && mean_w.is_finite()).then_some(PowerBound { mean_w, ..self })
     }
+}
+
+/// Whether what is measured has independent errors alone.
+pub(super) fn is_white(setup: &Setup) -> bool {
+    setup.control.as_ref().is_none_or(|control| {
+        let quantum = match control.sensors.velocity {
+            VelocitySensor::Measured => control.sensors.velocity_quantum,
+            VelocitySensor::Filtered { .. } => control.sensors.position_quantum,
+        };
+        quantum == 0.0
+    })
 }
 
 /// Whether something besides the start feeds V: noise and samples, pushes, or dry friction.
@@ -173,6 +218,73 @@ pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
         }
     };
     mean_square * gains.damping.trace()
+}
+
+/// The standard deviation of a measured position, or the most that rounding makes of one that stays within a step, in its unit.
+fn position_error(control: &Control) -> (f64, f64) {
+    (control.sensors.position_noise, 0.5 * control.sensors.position_quantum)
+}
+
+/// The root of the mean square of what errors of what is heard make of ż on one axis, at most, about; `gains` give the error of a velocity.
+fn heard_acceleration(setup: &Setup, agent: usize, gains: &Gains) -> f64 {
+    let Some(control) = &setup.control else { return 0.0 };
+    if setup.tracks(agent) {
+        return 0.0;
+    }
+    let (noise, rounding) = position_error(control);
+    let answers = fastest_reference_per_s(setup);
+    let velocity = (noise_w_of(control, gains) / gains.damping.trace()).sqrt();
+    core::f64::consts::SQRT_2 * answers * (answers * libm::hypot(noise, rounding) + velocity)
+}
+
+/// The mean of sᵀKs of what s gains from one sample to the next since what is heard has errors, W.
+pub(super) fn heard_between_w_of(setup: &Setup, agent: usize, gains: &Gains) -> f64 {
+    let heard = heard_acceleration(setup, agent, gains);
+    let Some(control) = &setup.control else { return 0.0 };
+    let period_s = 1.0 / control.sample_hz;
+    // Until a torque that is δ h late acts, s gains all that ż has changed by.
+    let late = control.computation_delay_s / period_s;
+    heard * heard * gains.damping.trace() * period_s * period_s * (1.0 / 3.0 + late + late * late)
+}
+
+/// D² of M, C and g at positions with errors, the largest of some of these states of an agent, W; `None` where K cannot be inverted, or nothing can be worked
+/// out.
+pub(super) fn positions_w_of(setup: &Setup, index: usize, gains: &Gains, way: &[&Led]) -> Option<f64> {
+    let Some(control) = &setup.control else { return Some(0.0) };
+    let (noise, rounding) = position_error(control);
+    if noise == 0.0 && rounding == 0.0 {
+        return Some(0.0);
+    }
+    let agent = &setup.agents[index];
+    let compliance = gains.damping.clone().cholesky()?.inverse();
+    let heard = heard_acceleration(setup, index, gains);
+    let theta = DVector::from_column_slice(&agent.robot.theta);
+    let n = agent.start.q.len();
+    let at = |q: &[f64], dq: &[f64], dz: &[f64]| {
+        let found = dynamics(agent, q, dq, dz)?;
+        let asked = DMatrix::from_row_slice(n, theta.len(), &found.regressor) * &theta;
+        Some((asked, DMatrix::from_row_slice(n, n, &found.mass)))
+    };
+    let of = |q: &[f64], dq: &[f64], dz: &[f64]| {
+        let (asked, mass) = at(q, dq, dz)?;
+        let (mut square, mut sum) = (0.0, DVector::zeros(n));
+        for axis in 0..n {
+            let error = libm::hypot(noise, rounding);
+            let mut there = q.to_vec();
+            there[axis] += error;
+            let (moved, heavier) = at(&there, dq, dz)?;
+            let (change, slope) = ((moved - &asked) / error, (heavier - &mass) / error);
+            let heard = heard * heard * (slope.transpose() * &compliance * slope).trace();
+            square += change.dot(&(&compliance * &change)) + heard;
+            sum += change.abs().add_scalar(heard.sqrt());
+        }
+        Some(noise * noise * square + rounding * rounding * sum.dot(&(compliance.abs() * &sum)))
+    };
+    let start = &agent.start;
+    let rest = vec![0.0; n];
+    let every = way.len().div_ceil(POSITIONS).max(1);
+    let led = way.iter().step_by(every).filter_map(|state| of(&state.q, &state.dq, &state.dz));
+    of(&start.q, &start.dq, &rest).into_iter().chain(led).reduce(f64::max)
 }
 
 /// D² of a torque that is off by half a step of its actuator at most on every axis, as it can be for ever where nothing moves, W; `None` where K

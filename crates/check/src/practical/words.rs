@@ -126,17 +126,30 @@ fn power(bound: &PowerBound) -> String {
         value if value > 0.0 => format!(", {name} {} W", rounded_up(value)),
         _ => String::new(),
     };
-    let sampled = if bound.sigma > 0.0 {
+    let swings = [("forces", bound.swing.forced), ("the start", bound.swing.started)];
+    let swings: Vec<String> = swings
+        .into_iter()
+        .filter(|(_, factor)| *factor > 1.005)
+        .map(|(of, factor)| format!("{of} times {}", rounded_up(factor)))
+        .collect();
+    let sampled = if !swings.is_empty() {
+        format!(
+            "; their square roots add up, {}, since s swings up where torques come late or velocities are filtered (and no less than the whole divided by 1 − σ, with σ = {})",
+            swings.join(" and "),
+            rounded(bound.sigma)
+        )
+    } else if bound.sigma > 0.0 {
         format!("; their square roots add up, and the whole is divided by 1 − σ, with σ = {}", rounded(bound.sigma))
     } else {
         String::new()
     };
     format!(
-        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{}{sampled}",
+        "the mean of {who} over {span_s} s {kind} {} W while nothing is clipped: V(0)/T {} W{}{}{}{}{}{}{}{sampled}",
         rounded_up(bound.mean_w),
         rounded_up(start_w),
         part("pushes", bound.push_w),
         part("measurement errors", bound.noise_w),
+        part("dynamics at positions with errors", bound.positions_w),
         part("steps of the torque", bound.steps_w),
         part("torques that are held and velocities that lag while they move", bound.held_w),
         part("what s gains from sample to sample", bound.between_w),

@@ -7,7 +7,7 @@ use crate::theorem::Theorem;
 pub(super) fn claim() -> Claim {
     Claim {
         theorem: Theorem::Backstepping,
-        promises: "nothing: the torque is unbounded at switches and delay jumps but for the filter and its limit"
+        promises: "nothing, since the torque is unbounded at switches and delay jumps but for the filter and its limit"
             .into(),
     }
 }

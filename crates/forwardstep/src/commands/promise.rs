@@ -104,6 +104,8 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     }
     match agreement {
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
+        // Nobody is there to agree with.
+        Err(_) if scenario.setup.agents.len() < 2 => {}
         Err(error) => {
             let reason = names::reason(&scenario.setup, error);
             console.line(format_args!("  {DIM}no exact value is predicted that all agree upon, since {reason}{DIM:#}"));

@@ -132,7 +132,7 @@ impl Watched {
         let Along { margin, load, power, states, rows } = along(setup, recording);
         let tracking_power = power
             .map(|PowerReached { mean_w, bound }| WatchedPower { mean_w, bound_w: bound.map(|bound| bound.mean_w) });
-        let sampling_margin = margin.map(|MarginReached { agent, t_s, sigma }| WatchedMargin { agent, t_s, sigma });
+        let sampling_margin = margin.map(|MarginReached { agent, t_s, sigma, .. }| WatchedMargin { agent, t_s, sigma });
         let static_load = load.map(|LoadReached { t_s, load }| WatchedLoad {
             agent: load.agent.index,
             axis: load.axis,

@@ -218,7 +218,9 @@ impl Predictions {
                 let delayed = course.delay(setup);
                 let settled = match course.settled_s {
                     Some(t_s) => format!(", settled to 1 % after {} s{delayed}", instant(t_s)),
-                    None => delayed,
+                    // What never comes is not delayed.
+                    None if delayed.is_empty() || course.reached => delayed,
+                    None => " with s ≡ 0".to_owned(),
                 };
                 let last = course.disagreement.last().copied().unwrap_or(f64::NAN);
                 let end_s = course.t_s.last().copied().unwrap_or(f64::NAN);
@@ -234,8 +236,8 @@ impl Predictions {
                 let changes = if *factor < 1.0 { "shrinks" } else { "grows" };
                 let (factor, wavers) = (number_words(100.0 * factor), number_words(100.0 * wavers));
                 format!(
-                    "rate: {} 1/s; every {period_s} s the disagreement {changes} to {factor} % (checked over {periods} periods, to \
-                     {wavers} %)",
+                    "rate: {} 1/s; every {period_s} s the disagreement {changes} to {factor} % (over {periods} periods, of which single ones \
+                     differ from that by up to {wavers} %)",
                     number_words(*rate_per_s)
                 )
             }
@@ -383,8 +385,13 @@ impl CourseFound {
                 ratio if ratio <= 2.0 || peak.value == 0.0 => {
                     format!("; while V ≤ V(0) at most {} {unit} near this course", three_places(at_most))
                 }
-                1000.0.. => "; the bound by V(0) is more than 1000 times as large, and of no practical use".to_owned(),
-                ratio => format!("; the bound by V(0) is {ratio:.1} times as large, and of no practical use"),
+                1000.0.. => {
+                    "; the bound by V(0) near this course is more than 1000 times as large, and of no practical use"
+                        .to_owned()
+                }
+                ratio => format!(
+                    "; the bound by V(0) near this course is {ratio:.1} times as large, and of no practical use"
+                ),
             },
         );
         let peak_torque = three_places(peak.value.abs());

@@ -323,7 +323,13 @@ impl fmt::Display for Notice {
             }
             Notice::Rotation { agent, degrees, more } => {
                 let way = if *degrees > 180.0 { "long" } else { "short" };
-                let (turn, other) = (of_degrees(*degrees), of_degrees(360.0 - degrees));
+                let [turn, other] = match [*degrees, 360.0 - degrees] {
+                    // Close to half a turn a whole degree does not tell which way is shorter.
+                    each if each[0] != each[1] && of_degrees(each[0]) == of_degrees(each[1]) => {
+                        each.map(|degrees| format!("{degrees:.2}"))
+                    }
+                    each => each.map(of_degrees),
+                };
                 write!(f, "{agent} turns by {turn}° to its target, ")?;
                 if turn == other {
                     write!(f, "which is as far either way")?;

@@ -262,6 +262,8 @@ fn the_way_round_is_the_one_that_is_asked_for_and_is_said() {
         assert_eq!(scenario.setup.agents[0].start.q, [0.0, 1.0, 0.0, 0.0]);
         assert!(scenario.notices[0].to_string().contains("turns by 180° to its target, which is as far either way"));
     }
+    let nearly = started("attitude = { axis = [0, 1, 0], angle_rad = 3.1398473 }\n").notices[0].to_string();
+    assert!(nearly.contains("turns by 179.90° to its target, the short way; from −q it would be 180.10°"), "{nearly}");
 }
 
 #[test]

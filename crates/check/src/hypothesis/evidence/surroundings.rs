@@ -63,6 +63,8 @@ pub enum Limited {
     TorqueRate,
     /// Resolve it.
     TorqueQuantum,
+    /// Turn rotors at any speed: of these `every-wrench` tells more.
+    Thrust,
 }
 
 /// What makes a measurement inexact.

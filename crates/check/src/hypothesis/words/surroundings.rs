@@ -49,7 +49,7 @@ pub(super) fn words(evidence: &LoopEvidence) -> String {
         }
         LoopEvidence::Friction { dry, most_w } => {
             format!(
-                "it is set-valued for {}: V may grow by {most_w:.4} W, which keeps s small and not zero",
+                "it is set-valued for {}: V may grow at up to {most_w:.4} W, which keeps s small and not zero",
                 names(dry)
             )
         }
@@ -113,6 +113,7 @@ fn limit(limited: Limited) -> &'static str {
         Limited::Torque => "torques are limited",
         Limited::TorqueRate => "the rate of torques is limited",
         Limited::TorqueQuantum => "torques are quantised",
+        Limited::Thrust => "rotors give no more than their thrust, and no less",
     }
 }
 

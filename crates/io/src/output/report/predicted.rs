@@ -50,7 +50,7 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     PredictedRate::NoneSince(reason) => p.note { "The rate is not predicted, since " (prose(reason)) "." },
                     PredictedRate::Period { period_s, factor, rate_per_s, wavers, periods } => p.note {
                         "Rate: " (number(*rate_per_s)) " 1/s. Every " (number(*period_s)) " s the disagreement " @if *factor < 1.0 { "shrinks" } @else { "grows" }
-                        " to " (number(100.0 * factor)) " % (checked over " (periods) " periods, to " (number(100.0 * wavers)) " %)."
+                        " to " (number(100.0 * factor)) " % (over " (periods) " periods, of which single ones differ from that by up to " (number(100.0 * wavers)) " %)."
                     },
                     PredictedRate::Roots { root_per_s: [re, im], multiplicity, correction_per_s, backward_error, excited, settled_s } => p.note {
                         "Rate: rightmost characteristic root beside zero " (number(*re)) @if *im != 0.0 { " ± " (number(*im)) " i" } " 1/s"

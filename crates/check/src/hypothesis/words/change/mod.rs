@@ -13,8 +13,8 @@ use forwardstep_sim::quantity::MOST_EVENTS;
 use super::numbers::{bound, rounded_down, rounded_up};
 use crate::hypothesis::evidence::{MOST_HELD, MOST_LEFT};
 use crate::hypothesis::{
-    Answer, Evidence, FollowingEvidence, GraphEvidence, Inexact, LinkEvidence, LoopEvidence, Named, ReferenceEvidence,
-    WeightFault,
+    Answer, Evidence, FollowingEvidence, GraphEvidence, Inexact, Limited, LinkEvidence, LoopEvidence, Named,
+    ReferenceEvidence, WeightFault,
 };
 
 /// Agents that are named.
@@ -264,6 +264,9 @@ fn surroundings(evidence: &LoopEvidence) -> Option<String> {
             "a push whose formula has a value at all times until it ends, or an earlier end, `for_s`".into()
         }
         LoopEvidence::Pushes { .. } => "an end of every push, `for_s`".into(),
+        LoopEvidence::Applied { enforced, limited } if enforced.is_empty() && limited[..] == [Limited::Thrust] => {
+            "thrusts without ends, as `every-wrench` says".into()
+        }
         LoopEvidence::Applied { enforced, limited } => match (limited.is_empty(), enforced.is_empty()) {
             (true, _) => "limits that are reported, without `enforce_limits`".into(),
             (false, true) => "torques as the law asks for them: no limits and no steps in `control`".into(),
