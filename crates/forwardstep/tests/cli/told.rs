@@ -250,6 +250,7 @@ fn regress_what_failed_in_a_run_is_said_beside_its_hypothesis() {
     assert!(stderr(&run).contains("choose a target that stays away from there, start elsewhere, or"), "{run}");
     let page = fs::read_to_string(folder.path().join("v/report.html")).unwrap();
     assert!(page.contains("<span class=\"bad\">[input-factor]: it failed, at t = 2.551 s</span>"));
+    assert!(page.contains("the smallest in this run was ") && !page.contains(", of p, at t"));
     assert!(page.contains("in this run it failed, at t = 2.551 s") && !page.contains("this run reached its horizon"));
     let compared = stdout(&forwardstep(&folder, &["compare", "v", "craft", "--json"]));
     assert!(compared.contains("watched during the run: input-factor; [input-factor]: it failed, at"), "{compared}");
@@ -288,7 +289,10 @@ fn regress_thrusts_rotors_and_wheels_have_peaks() {
         // Of rotors and wheels limits are known, so that their share is said.
         let (loads, _) = loads.split_once("</table>").unwrap();
         assert_eq!(loads.contains(" %</span>"), scenario != "thrust-continuous", "{loads}");
+        // How near a thrust came to its floor.
+        assert_eq!(page.contains("; the smallest in this run was "), scenario != "theorem-7", "{scenario}");
         if scenario == "formation" {
+            assert!(page.contains("; the smallest in this run was 8.79 N, of left, at t = "), "{page}");
             // Four, and the largest of a rotor beside the 8 N that it has.
             assert_eq!(loads.matches("<th scope=\"row\"><span class=\"dot").count(), 4, "{loads}");
             assert!(loads.contains(">6.951</span>") && loads.contains(">87 %</span>"), "{loads}");

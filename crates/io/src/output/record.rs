@@ -2,12 +2,13 @@
 
 use forwardstep_check::hypothesis::Subject;
 use forwardstep_check::{Answer, Footing, Ground, Hypothesis, Id, Report};
-use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome, Signal};
+use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
 
 use super::digital::DigitalCost;
 use super::injected::{Injected, InjectedCourse};
 use super::metrics::{Gap, Metrics};
+use super::names;
 use super::prediction::Predictions;
 use super::text::number;
 use crate::scenario::{Goal, InputFile};
@@ -96,6 +97,31 @@ impl RunRecord<'_> {
         };
         let vanished = matches!(breakdown.cause, BreakdownCause::Vanished { .. });
         (vanished && is_cause && is_whose).then(|| format!("it failed, at t = {} s", number(breakdown.t_s)))
+    }
+
+    /// How near what a hypothesis keeps from zero came to it in the rows of the run, as a clause; `None` where nothing that is recorded tells.
+    pub(crate) fn nearest(&self, hypothesis: &Hypothesis) -> Option<String> {
+        let signals: &[Signal] = match hypothesis.id {
+            Id::NonzeroThrust => &[Signal::Thrust],
+            Id::InputFactor => &[Signal::Divisor],
+            Id::RegularJacobian => &[Signal::Determinant, Signal::SingularValue],
+            _ => return None,
+        };
+        let is_of = |agent: usize| match &hypothesis.subject {
+            Subject::Agent(named) => named.index == agent,
+            _ => true,
+        };
+        let Recording { t_s, columns, .. } = &self.outcome.recording;
+        let those = columns.iter().filter(|column| signals.contains(&column.signal) && is_of(column.agent));
+        let all = those.flat_map(|column| t_s.iter().zip(&column.values).map(move |(t_s, value)| (column, t_s, value)));
+        let (column, t_s, value) = all.min_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+        let unit = names::unit(self.setup, column.agent, column.signal, column.axis);
+        let unit = if matches!(unit.as_str(), "" | "1" | "SI") { String::new() } else { format!(" {unit}") };
+        let whose = match self.setup.agents.len() {
+            1 => String::new(),
+            _ => format!(", of {}", self.setup.agents.get(column.agent)?.name),
+        };
+        Some(format!("the smallest in this run was {}{unit}{whose}, at t = {} s", number(*value), number(*t_s)))
     }
 
     /// What the derivation rests on; what failed in the run is among what it lacks.

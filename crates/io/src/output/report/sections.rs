@@ -75,6 +75,7 @@ pub(crate) fn verdicts(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool)
                                         @if hypothesis.answer() == Answer::Watched {
                                             @if let Some(failed) = record.failed(hypothesis) { "; " strong.bad { "in this run " (failed) } }
                                             @else if record.outcome.ending == Ending::Completed { "; this run reached its horizon" }
+                                            @if let Some(nearest) = record.nearest(hypothesis) { "; " (nearest) }
                                         }
                                     }
                                     @if let Some(change) = hypothesis.change() {
