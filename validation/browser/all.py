@@ -14,7 +14,7 @@ import webdriver
 from checks import LONG, NO_BROWSER
 from pages import SCENARIOS
 
-BESIDE = [["follow.py"], ["stage.py"], ["layout.py"], ["hands.py"], ["compare.py"]]
+BESIDE = [["layout.py", "whole"], ["layout.py", "cards"], ["stage.py"], ["follow.py"], ["hands.py"], ["compare.py"]]
 BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", *SCENARIOS[::4]]]
 ALONE = [["speed.py"]] if LONG else []
 

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Checks of how a page is laid out, printed, saved and gone through by keys.
 
-    validation/browser/layout.py target/release/forwardstep
+    validation/browser/layout.py target/release/forwardstep [whole] [cards]
 """
 
 import csv
 import io
 import json
 import re
+import sys
 
 import checks
 from checks import FRAMES, drawn, expect, some, value, waited
@@ -384,8 +385,8 @@ def predicted(browser, page, name):
     browser.screen(1400, 900)
 
 
-def check(browser, folder):
-    browser.screen(1400, 900)
+def whole(browser, folder):
+    """Pages as a whole: their columns at every width, in print, with many agents, their tables and keys."""
     long = folder / "long-title.toml"
     long.write_text(masses(folder, "long-title", RING).read_text().replace('"Masses"', f'"{"Long words of a title " * 8}"').replace('"point"', '"a-point-with-a-very-long-name"'))
     ten = folder / "ten-arms.toml"
@@ -416,6 +417,10 @@ def check(browser, folder):
     predicted(browser, page, "six-arms")
     browser.open(page)
     titled(browser, "six-arms")
+
+
+def cards(browser, folder):
+    """What single cards draw and say."""
     rounding = folder / "rounding.toml"
     rounding.write_text(ROUNDING)
     browser.open(folder.run("rounding", rounding))
@@ -441,6 +446,15 @@ def check(browser, folder):
     alone(browser, folder.run("one", one), "one alone")
     browser.open(folder.run("gusts"))
     units(browser, "gusts", "external", "External forces", "N")
+
+
+PARTS = {"whole": whole, "cards": cards}
+
+
+def check(browser, folder):
+    for part in sys.argv[2:] or PARTS:
+        browser.screen(1400, 900)
+        PARTS[part](browser, folder)
     complaints = browser.complaints()
     expect(not complaints, f"layout: the console says {complaints[:2]}")
 

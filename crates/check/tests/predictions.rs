@@ -361,6 +361,37 @@ fn eq_noise_feeds_the_power_that_its_filter_lets_through() {
     assert!((filtered / found - 1.0).abs() < 0.02, "{filtered} {found}");
 }
 
+/// At rest M errs as much as references ask for by what they hear, which comes later with late torques; rounding is not noise where a loop swings up.
+#[test]
+fn errors_of_positions_count_by_what_is_heard_of_them() {
+    let of = |roots: &[f64], delay_s: f64, noise: [f64; 2]| {
+        let mut setup = two_arms().sampled(500.0);
+        for agent in &mut setup.agents {
+            (agent.start.q, agent.start.dq) = (vec![0.3, 0.4], vec![0.0; 2]);
+            agent.roots_per_s = roots.to_vec().into();
+        }
+        let control = setup.control.as_mut().unwrap();
+        control.computation_delay_s = delay_s;
+        [control.sensors.position_noise, control.sensors.position_quantum] = noise;
+        bound(&setup).unwrap()
+    };
+    let [slow, fast] = [[1.0, 2.0], [10.0, 20.0]].map(|roots| of(&roots, 0.0, [0.01, 0.0]));
+    assert!(fast.positions_w > 1.05 * slow.positions_w && fast.between_w > 100.0 * slow.between_w, "{slow:?} {fast:?}");
+    // ⅓ + δ + δ² for a δ of one, beside ⅓.
+    let late = of(&[1.0, 2.0], 0.002, [0.01, 0.0]);
+    assert!((late.between_w / slow.between_w - 7.0).abs() < 1e-9, "{slow:?} {late:?}");
+    let filtered = |noise: [f64; 2]| {
+        let mut setup = two_arms().sampled(500.0);
+        let sensors = &mut setup.control.as_mut().unwrap().sensors;
+        sensors.velocity = VelocitySensor::Filtered { cut_off_hz: 8.0 };
+        [sensors.position_noise, sensors.position_quantum] = noise;
+        bound(&setup).unwrap()
+    };
+    let [noise, steps] = [[1e-3, 0.0], [0.0, 1e-3 * 12.0_f64.sqrt()]].map(filtered);
+    assert!((noise.noise_w / steps.noise_w - 1.0).abs() < 1e-12 && noise.swing == steps.swing, "{noise:?} {steps:?}");
+    assert!(noise.is_white && !steps.is_white && noise.mean_w < steps.mean_w, "{noise:?} {steps:?}");
+}
+
 /// A torque in steps of q is off by q/2 at most, of every axis and for ever.
 #[test]
 fn eq_steps_of_the_torque_feed_the_power_as_pushes_of_half_a_step() {

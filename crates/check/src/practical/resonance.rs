@@ -215,6 +215,8 @@ mod tests {
             assert!((mode.swing(period_s * 3.0) / swing(3.0) - 1.0).abs() < 1e-3);
             let whole = hold.swing(period_s, rate * period_s, 0.0).forced;
             assert!(whole >= 0.999 * peak * peak, "{whole} {peak}");
+            let started = hold.swing(period_s, rate * period_s, 0.0).started;
+            assert!(started >= mode.transient(), "{started}");
         }
     }
 
@@ -224,6 +226,9 @@ mod tests {
         let (rate, lag_s, period_s) = (20.0, 0.05, 1e-3);
         let mode = Hold { delay_s: 0.0, cut_off_rad_s: Some(1.0 / lag_s) }.mode(period_s, rate * period_s, 0.0);
         assert!((mode.transient() / (1.0 + rate * lag_s) - 1.0).abs() < 0.03, "{}", mode.transient());
+        let learns = Hold { delay_s: 0.0, cut_off_rad_s: Some(1.0 / lag_s) };
+        let [alone, learning] = [0.4, 0.6].map(|sigma| learns.swing_at(period_s, 0.4 * 2.0 / period_s, sigma));
+        assert!(learning.forced > alone.forced && learning.started > alone.started, "{alone:?} {learning:?}");
         // Held for a period and a period late, a command is a period and a half old on the mean.
         let mode = Hold { delay_s: 0.01, cut_off_rad_s: None }.mode(0.01, 0.05, 0.0);
         let old = 0.05 * 1.5;

@@ -26,7 +26,7 @@ fn predictions_are_made_where_they_are_asked_for_and_are_said_to_be_for_no_track
     assert_eq!(value.len(), 2);
     assert!(text.contains("value agreed upon (") && text.contains("peak torque "), "{text}");
     assert!(rate["excited"].as_f64().unwrap() > 0.05, "of three roots in one place the largest is not at the start");
-    assert!(text.contains("rate: rightmost root −1 1/s"), "{text}");
+    assert!(text.contains("rate: rightmost characteristic root −1 1/s"), "{text}");
 }
 
 #[test]

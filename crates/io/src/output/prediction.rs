@@ -245,13 +245,15 @@ impl Predictions {
                 let turning = if *im == 0.0 { String::new() } else { format!(" ± {} i", number_words(*im)) };
                 let re = number_words(*re);
                 let (correction, excited) = (number_words(*correction_per_s), number_words(*excited));
-                let into = format!("the start makes {excited} {unit}").trim_end().to_owned();
+                let into = format!("{excited} {unit}").trim_end().to_owned();
                 // Of k roots in one place grows a power of t beside the exponential.
                 let several = match multiplicity {
                     0 | 1 => String::new(),
-                    &count => format!(", of multiplicity {count}, beside which a polynomial in t of a degree up to {} may decay with it", count - 1),
+                    &count => {
+                        format!(", {count} times, so that a polynomial in t of degree {} at most may stand before its exponential", count - 1)
+                    }
                 };
-                format!("rate: rightmost root {re}{turning} 1/s, last corrected by {correction}{several}; {into} of it")
+                format!("rate: rightmost characteristic root {re}{turning} 1/s (to {correction} 1/s){several}; its part of the disagreement starts from {into}")
             }
         });
         sentences.extend(

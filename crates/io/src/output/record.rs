@@ -10,7 +10,7 @@ use super::injected::{Injected, InjectedCourse};
 use super::metrics::{Gap, Metrics};
 use super::names;
 use super::prediction::Predictions;
-use super::text::number;
+use super::text::{self, number};
 use crate::scenario::{Goal, InputFile};
 use crate::shapes::Shapes;
 
@@ -116,7 +116,8 @@ impl RunRecord<'_> {
         let all = those.flat_map(|column| t_s.iter().zip(&column.values).map(move |(t_s, value)| (column, t_s, value)));
         let (column, t_s, value) = all.min_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         let unit = names::unit(self.setup, column.agent, column.signal, column.axis);
-        let unit = if matches!(unit.as_str(), "" | "1" | "SI") { String::new() } else { format!(" {unit}") };
+        let unit =
+            if matches!(unit.as_str(), "" | "1" | "SI") { String::new() } else { format!(" {}", text::unit(&unit)) };
         let whose = match self.setup.agents.len() {
             1 => String::new(),
             _ => format!(", of {}", self.setup.agents.get(column.agent)?.name),

@@ -55,8 +55,8 @@ pub(crate) fn section(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     PredictedRate::Roots { root_per_s: [re, im], multiplicity, correction_per_s, backward_error, excited, settled_s } => p.note {
                         "Rate: rightmost characteristic root beside zero " (number(*re)) @if *im != 0.0 { " ± " (number(*im)) " i" } " 1/s"
                         @if *multiplicity > 1 { " (" (multiplicity) " roots)" }
-                        ", last corrected by " (number(*correction_per_s)) " 1/s, backward error " (number(*backward_error))
-                        "; the start makes a disagreement of " (number(*excited)) " " (unit) " of it"
+                        " (to " (number(*correction_per_s)) " 1/s), backward error " (number(*backward_error))
+                        "; its part of the disagreement starts from " (number(*excited)) " " (unit)
                         @if let Some(t_s) = settled_s { "; by it and the next roots settled to 1 % after " (number(*t_s)) " s" }
                         "."
                     },
