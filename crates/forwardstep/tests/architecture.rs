@@ -169,7 +169,7 @@ fn simulation_and_verdicts_touch_no_files() {
 /// What the page has in common with pictures for print and with words stands beside it.
 #[test]
 fn pictures_and_words_take_nothing_from_the_page() {
-    for below in ["plots", "comparison", "formula", "guarantee.rs", "prediction.rs", "residuals.rs", "explanation.rs"] {
+    for below in ["plots", "comparison", "formula", "guarantee.rs", "prediction", "residuals.rs", "explanation.rs"] {
         for Source { path, code } in sources(&format!("io/src/output/{below}")) {
             // A comparison has a page of its own.
             let code = code.replace("report::side_by_side", "");

@@ -13,9 +13,7 @@ use super::held::Hold;
 use super::led::{Led, close_rows};
 use super::loads::{StaticLoad, limits, load};
 use super::margin::gains;
-use super::power::{
-    PowerBound, between_w_of, held_w_of, is_fed, is_white, noise_w_of, positions_w_of, pushed_w, steps_w_of,
-};
+use super::power::{PowerBound, is_fed, pushed_w};
 use super::rates::{Gains, Rates};
 use super::resonance::Swing;
 use crate::kinds::is_lagrangian;
@@ -136,15 +134,14 @@ pub fn along(setup: &Setup, recording: &Recording) -> Along {
 }
 
 /// The mean of Σ sᵀKs over all rows, with σ and the swing as large as they became.
-fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], (sigma, swing): (f64, Swing)) -> Option<PowerReached> {
+fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], grown: (f64, Swing)) -> Option<PowerReached> {
     if !is_fed(setup) {
         return None;
     }
     let (rows, [first_s, .., last_s]) = (t_s.len(), t_s) else { return None };
     let span_s = last_s - first_s;
-    let (mut mean_w, mut start_j, mut push_w, mut agents) = (0.0, Some(0.0), Some(0.0), 0);
-    let (mut noise_w, mut positions_w, mut steps_w, mut held_w) = (0.0, 0.0, 0.0, 0.0);
-    let (mut between_w, mut friction_w) = (0.0, 0.0);
+    let (mut mean_w, mut start_j, mut push_w) = (0.0, Some(0.0), Some(0.0));
+    let mut parts = PowerBound::of_none(setup, span_s, grown);
     for agent in (0..setup.agents.len()).filter(|agent| is_lagrangian(&setup.agents[*agent])) {
         let gains = Gains::of(&setup.agents[agent])?;
         let axes = gains.damping.nrows();
@@ -164,42 +161,16 @@ fn power(setup: &Setup, columns: &Columns<'_>, t_s: &[f64], (sigma, swing): (f64
         // Dry friction is a part of what was recorded, and no push.
         let own_w = dry_w.map_or(Some(own_w), |_| pushed_w(&setup.agents[agent], &gains, [*first_s, *last_s]));
         push_w = push_w.zip(own_w).map(|(all, own)| all + own);
-        friction_w += dry_w.unwrap_or(0.0);
         let energy_j = columns.at(agent, Signal::Lyapunov, 1, 0).and_then(|v| v.first().copied());
         start_j = start_j.zip(energy_j).map(|(all, own)| all + own);
-        noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
-        steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
         let close = close_rows(columns, rows, [agent, axes], setup.agents.len());
         let way: Vec<Led> = close.iter().filter_map(|row| Led::recorded(columns, t_s, [agent, axes], *row)).collect();
         let way: Vec<&Led> = way.iter().collect();
-        let own = &setup.agents[agent];
-        held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, own, &gains, &way, span_s))?;
-        between_w += setup.control.as_ref().map_or(0.0, |it| between_w_of(it, &gains, &way, span_s));
-        positions_w += positions_w_of(setup, agent, &gains, &way).unwrap_or(0.0);
-        agents += 1;
+        parts.add(setup, agent, &gains, &way)?;
     }
-    let parts = |(start_j, push_w): (f64, f64)| {
-        let start_w = start_j / span_s;
-        let mean_w = f64::NAN;
-        let bound = PowerBound {
-            agents,
-            span_s,
-            start_w,
-            push_w,
-            noise_w,
-            positions_w,
-            steps_w,
-            held_w,
-            between_w,
-            friction_w,
-            sigma,
-            swing,
-            is_white: is_white(setup),
-            mean_w,
-        };
-        bound.worked_out()
-    };
-    (agents > 0 && mean_w.is_finite()).then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(parts) })
+    let bound = |(start_j, push_w): (f64, f64)| PowerBound { start_w: start_j / span_s, push_w, ..parts }.worked_out();
+    (parts.agents > 0 && mean_w.is_finite())
+        .then(|| PowerReached { mean_w, bound: start_j.zip(push_w).and_then(bound) })
 }
 
 /// The mean of sᵀKs over the period of a row, which begins with a sample: z is held until the next one, and q̇ goes on as the reference does.

@@ -120,45 +120,57 @@ impl PowerBound {
             return None;
         }
         let way = way();
-        let (mut start_j, mut push_w, mut friction_w, mut agents) = (0.0, 0.0, 0.0, 0);
-        let (mut noise_w, mut positions_w, mut steps_w, mut held_w, mut between_w) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        let (mut start_j, mut push_w) = (0.0, 0.0);
         let span_s = setup.time.end_s;
+        let grown = match setup.control {
+            Some(_) => (margin?.worst.sigma, margin?.swing()),
+            None => (0.0, Swing::NONE),
+        };
+        let mut parts = PowerBound::of_none(setup, span_s, grown);
         for (index, agent) in setup.agents.iter().enumerate().filter(|(_, agent)| is_lagrangian(agent)) {
             let gains = Gains::of(agent)?;
             start_j += start_energy_j(setup, index, &gains)?;
             push_w += pushed_w(agent, &gains, [0.0, span_s])?;
-            friction_w += dry_loss_w(agent).unwrap_or(0.0);
-            noise_w += setup.control.as_ref().map_or(0.0, |control| noise_w_of(control, &gains));
-            steps_w += setup.control.as_ref().map_or(Some(0.0), |control| steps_w_of(control, &gains))?;
             let own: Vec<&Led> = way.iter().filter(|state| state.agent == index).collect();
-            held_w += setup.control.as_ref().map_or(Some(0.0), |it| held_w_of(it, agent, &gains, &own, span_s))?;
-            between_w += setup.control.as_ref().map_or(0.0, |control| between_w_of(control, &gains, &own, span_s));
-            positions_w += positions_w_of(setup, index, &gains, &own).unwrap_or(0.0);
-            between_w += heard_between_w_of(setup, index, &gains);
-            agents += 1;
+            parts.add(setup, index, &gains, &own)?;
+            parts.between_w += heard_between_w_of(setup, index, &gains);
         }
-        let (sigma, swing) = match setup.control {
-            Some(_) => (margin?.worst.sigma, margin?.swing()),
-            None => (0.0, Swing::NONE),
-        };
-        let start_w = start_j / span_s;
-        let parts = PowerBound {
-            agents,
+        PowerBound { start_w: start_j / span_s, push_w, ..parts }.worked_out()
+    }
+
+    /// Of no agent yet, over a span, with σ and the swing of the worst of them.
+    pub(super) fn of_none(setup: &Setup, span_s: f64, (sigma, swing): (f64, Swing)) -> PowerBound {
+        PowerBound {
+            agents: 0,
             span_s,
-            start_w,
-            push_w,
-            noise_w,
-            positions_w,
-            steps_w,
-            held_w,
-            between_w,
-            friction_w,
+            start_w: 0.0,
+            push_w: 0.0,
+            noise_w: 0.0,
+            positions_w: 0.0,
+            steps_w: 0.0,
+            held_w: 0.0,
+            between_w: 0.0,
+            friction_w: 0.0,
             sigma,
             swing,
             is_white: is_white(setup),
             mean_w: f64::NAN,
-        };
-        (agents > 0).then(|| parts.worked_out()).flatten()
+        }
+    }
+
+    /// Adds what an agent and the loop around it feed along these of its states, in the order of time; `None` where that cannot be told.
+    pub(super) fn add(&mut self, setup: &Setup, index: usize, gains: &Gains, way: &[&Led]) -> Option<()> {
+        let agent = &setup.agents[index];
+        self.agents += 1;
+        self.friction_w += dry_loss_w(agent).unwrap_or(0.0);
+        if let Some(control) = &setup.control {
+            self.noise_w += noise_w_of(control, gains);
+            self.positions_w += positions_w_of(setup, control, index, gains, way)?;
+            self.steps_w += steps_w_of(control, gains)?;
+            self.held_w += held_w_of(control, agent, gains, way, self.span_s)?;
+            self.between_w += between_w_of(control, gains, way, self.span_s);
+        }
+        Some(())
     }
 
     /// Whether it is one to be expected, not one for certain: with noise, and between samples.
@@ -188,7 +200,7 @@ impl PowerBound {
 }
 
 /// Whether what is measured has independent errors alone.
-pub(super) fn is_white(setup: &Setup) -> bool {
+fn is_white(setup: &Setup) -> bool {
     setup.control.as_ref().is_none_or(|control| {
         let quantum = match control.sensors.velocity {
             VelocitySensor::Measured => control.sensors.velocity_quantum,
@@ -205,7 +217,7 @@ pub(crate) fn is_fed(setup: &Setup) -> bool {
 }
 
 /// D² of the measurement errors of an agent, W.
-pub(super) fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
+fn noise_w_of(control: &Control, gains: &Gains) -> f64 {
     let sensors = &control.sensors;
     let square = |noise: f64, quantum: f64, share: f64| noise * noise + share * quantum * quantum;
     let mean_square = match sensors.velocity {
@@ -238,7 +250,7 @@ fn heard_acceleration(setup: &Setup, agent: usize, gains: &Gains) -> f64 {
 }
 
 /// The mean of sᵀKs of what s gains from one sample to the next since what is heard has errors, W.
-pub(super) fn heard_between_w_of(setup: &Setup, agent: usize, gains: &Gains) -> f64 {
+fn heard_between_w_of(setup: &Setup, agent: usize, gains: &Gains) -> f64 {
     let heard = heard_acceleration(setup, agent, gains);
     let Some(control) = &setup.control else { return 0.0 };
     let period_s = 1.0 / control.sample_hz;
@@ -249,8 +261,7 @@ pub(super) fn heard_between_w_of(setup: &Setup, agent: usize, gains: &Gains) -> 
 
 /// D² of M, C and g at positions with errors, the largest of some of these states of an agent, W; `None` where K cannot be inverted, or nothing can be worked
 /// out.
-pub(super) fn positions_w_of(setup: &Setup, index: usize, gains: &Gains, way: &[&Led]) -> Option<f64> {
-    let Some(control) = &setup.control else { return Some(0.0) };
+fn positions_w_of(setup: &Setup, control: &Control, index: usize, gains: &Gains, way: &[&Led]) -> Option<f64> {
     let (noise, rounding) = position_error(control);
     if noise == 0.0 && rounding == 0.0 {
         return Some(0.0);
@@ -289,20 +300,14 @@ pub(super) fn positions_w_of(setup: &Setup, index: usize, gains: &Gains, way: &[
 
 /// D² of a torque that is off by half a step of its actuator at most on every axis, as it can be for ever where nothing moves, W; `None` where K
 /// cannot be inverted.
-pub(super) fn steps_w_of(control: &Control, gains: &Gains) -> Option<f64> {
+fn steps_w_of(control: &Control, gains: &Gains) -> Option<f64> {
     let half = 0.5 * control.actuators.torque_quantum;
     Some(half * half * gains.damping.clone().cholesky()?.inverse().abs().sum())
 }
 
 /// D² of torques that are held and velocities that are filtered along these states of an agent, in the order of time, as the mean over a
 /// span, W; `None` where K cannot be inverted.
-pub(super) fn held_w_of(
-    control: &Control,
-    agent: &AgentSetup,
-    gains: &Gains,
-    way: &[&Led],
-    span_s: f64,
-) -> Option<f64> {
+fn held_w_of(control: &Control, agent: &AgentSetup, gains: &Gains, way: &[&Led], span_s: f64) -> Option<f64> {
     let (hold, period_s) = (Hold::of(control), 1.0 / control.sample_hz);
     let late = hold.delay_s / period_s;
     let since = period_s * period_s * (1.0 / 3.0 + late + late * late);
@@ -348,7 +353,7 @@ fn begun_w_of(control: &Control, dq: &[f64], gains: &Gains, span_s: f64) -> f64 
 }
 
 /// The mean of sᵀKs of what s gains from one sample to the next along these states of an agent, W.
-pub(super) fn between_w_of(control: &Control, gains: &Gains, way: &[&Led], span_s: f64) -> f64 {
+fn between_w_of(control: &Control, gains: &Gains, way: &[&Led], span_s: f64) -> f64 {
     mean_acceleration_w_s2(gains, way, span_s) / (3.0 * control.sample_hz * control.sample_hz)
 }
 

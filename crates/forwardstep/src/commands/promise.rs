@@ -104,7 +104,7 @@ pub(crate) fn show(scenario: &Scenario, promise: &Promise, console: &mut Console
     }
     match agreement {
         Ok(prediction) => console.line(format_args!("  predicted agreement: {}", first(&prediction.known_digits()))),
-        // Nobody is there to agree with.
+        // One agent alone has no other to agree with.
         Err(_) if scenario.setup.agents.len() < 2 => {}
         Err(error) => {
             let reason = names::reason(&scenario.setup, error);

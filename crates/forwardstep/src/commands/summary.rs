@@ -66,19 +66,18 @@ pub(crate) fn summary(
     if let Some(agreement) = &metrics.agreement {
         let reached: Vec<f64> = agreement.iter().map(|axis| axis.reached).collect();
         rows.push(("predicted agreement", predicted.to_owned()));
-        let is_agreed = record.is_agreed(metrics);
+        let (is_agreed, shown) = (record.is_agreed(metrics), list(&reached));
         // Agents may agree long before s has moved all of them to where they will rest.
-        let farthest = agreement.iter().map(|axis| axis.distance).fold(0.0, f64::max);
-        let [first, last] =
-            [metrics.disagreement.initial(), metrics.disagreement.last()].map(Option::unwrap_or_default);
-        let moves = metrics.final_tracking_error.filter(|_| is_agreed && farthest > (0.01 * first).max(10.0 * last));
-        let moves = moves.map_or_else(String::new, |s| {
+        let course = record.prediction.as_ref().and_then(|prediction| prediction.course());
+        let apart = metrics.disagreement.last().unwrap_or(f64::NAN);
+        let is_beside = shown != predicted && course.is_some_and(|course| course.is_beside(&reached, apart));
+        let moves = metrics.final_tracking_error.filter(|_| is_agreed && is_beside).map_or_else(String::new, |s| {
             format!(
                 ", on the way to the predicted one while s, still {}, vanishes",
                 with_unit(s, &units(setup, Signal::TrackingError))
             )
         });
-        rows.push((if is_agreed { "reached agreement" } else { "mean, no agreement" }, list(&reached) + &moves));
+        rows.push((if is_agreed { "reached agreement" } else { "mean, no agreement" }, shown + &moves));
     }
     if let Some(peak) = metrics.peak_torques.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs())) {
         let unit = unit(setup, peak.agent, Signal::Torque, peak.axis);

@@ -139,7 +139,7 @@ fn tracking_error(record: &RunRecord<'_>, metrics: &Metrics) -> Option<String> {
             "At the end s is still {size}{why}. Without s, and in continuous time, {without} would be left."
         ));
     }
-    let moved = match is_moved(course, metrics, last) {
+    let moved = match metrics.final_means.as_ref().is_some_and(|means| course.is_beside(means, last)) {
         true if course.moved_by_s => "; it also moved the value agreed upon",
         true => "; what they agree upon comes to the predicted value once it has vanished",
         false => "",
@@ -147,12 +147,6 @@ fn tracking_error(record: &RunRecord<'_>, metrics: &Metrics) -> Option<String> {
     Some(format!(
         "At the end s is still {size}{why}. Without s {without} would be left: s, not the network, keeps the agents apart{moved}."
     ))
-}
-
-/// Whether the agents agree on a value beside the predicted one, by more than they are apart.
-fn is_moved(course: &CourseFound, metrics: &Metrics, apart: f64) -> bool {
-    let (Some(within), Some(means)) = (&course.within, &metrics.final_means) else { return false };
-    within.iter().zip(means).any(|([low, high], mean)| *mean < low - apart || *mean > high + apart)
 }
 
 /// The value agreed upon on every axis, where it is bounded and reached, beside the mean of the last positions.

@@ -264,14 +264,17 @@ fn surroundings(evidence: &LoopEvidence) -> Option<String> {
             "a push whose formula has a value at all times until it ends, or an earlier end, `for_s`".into()
         }
         LoopEvidence::Pushes { .. } => "an end of every push, `for_s`".into(),
-        LoopEvidence::Applied { enforced, limited } if enforced.is_empty() && limited[..] == [Limited::Thrust] => {
-            "thrusts without ends, as `every-wrench` says".into()
+        LoopEvidence::Applied { enforced, limited } => {
+            let is_rotors = |limited: &Limited| *limited == Limited::Thrust;
+            let stated = match (limited.iter().all(is_rotors), enforced.is_empty()) {
+                (true, true) => None,
+                (true, false) => Some("limits that are reported, without `enforce_limits`"),
+                (false, true) => Some("torques as the law asks for them: no limits and no steps in `control`"),
+                (false, false) => Some("no limits and no steps of torques in `control`, and no `enforce_limits`"),
+            };
+            let rotors = limited.iter().any(is_rotors).then_some("thrusts without ends, as `every-wrench` says");
+            stated.into_iter().chain(rotors).collect::<Vec<_>>().join("; ")
         }
-        LoopEvidence::Applied { enforced, limited } => match (limited.is_empty(), enforced.is_empty()) {
-            (true, _) => "limits that are reported, without `enforce_limits`".into(),
-            (false, true) => "torques as the law asks for them: no limits and no steps in `control`".into(),
-            (false, false) => "no limits and no steps of torques in `control`, and no `enforce_limits`".into(),
-        },
         LoopEvidence::Sampling { .. } => {
             "continuous control, without `control`: no rate makes the theorem speak of samples".into()
         }
