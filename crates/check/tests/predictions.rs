@@ -389,6 +389,9 @@ fn errors_of_positions_count_by_what_is_heard_of_them() {
     };
     let [noise, steps] = [[1e-3, 0.0], [0.0, 1e-3 * 12.0_f64.sqrt()]].map(filtered);
     assert!((noise.noise_w / steps.noise_w - 1.0).abs() < 1e-12 && noise.swing == steps.swing, "{noise:?} {steps:?}");
+    // What estimates start from is V(0), of which more is left where a loop swings.
+    let alone = filtered([0.0; 2]);
+    assert!(alone.swing.started > 1.2 && alone.mean_w >= alone.swing.started * alone.start_w, "{alone:?}");
     assert!(noise.is_white && !steps.is_white && noise.mean_w < steps.mean_w, "{noise:?} {steps:?}");
 }
 
@@ -406,6 +409,11 @@ fn eq_steps_of_the_torque_feed_the_power_as_pushes_of_half_a_step() {
     assert!((steps.steps_w - 2.25 * 4.0 / 8.0).abs() < 1e-12 && steps.mean_w > none.mean_w, "{steps:?}");
     let drive = 0.5 * steps.steps_w.sqrt() / (1.0 - steps.sigma);
     assert!(steps.mean_w > drive * drive, "{steps:?}");
+    // Nothing is late or filtered, so that σ is what counts.
+    for found in [none, steps] {
+        let drive = [found.steps_w, found.held_w, found.positions_w].into_iter().map(f64::sqrt).sum::<f64>();
+        assert!(found.mean_w >= mean_power_w(drive * drive, 0.0, found.start_w, found.sigma), "{found:?}");
+    }
 }
 
 #[test]

@@ -298,6 +298,13 @@ fn vehicles_are_told_apart_from_rotorcraft() {
     // Their limits cut off what is asked for, whether or not those of others are only reported.
     assert_eq!(answer(&craft(None), About::FullTorque), Answer::Holds);
     assert_eq!(answer(&craft(Some(rotors)), About::FullTorque), Answer::NotCovered);
+    let mut enforced = craft(Some(rotors));
+    let change =
+        |setup: &Setup| check(setup).hypotheses.iter().find(|one| one.id == Id::AppliedTorque).unwrap().change();
+    assert_eq!(change(&enforced).unwrap(), "thrusts without ends, as `every-wrench` says");
+    enforced.agents[0].enforce_limits = true;
+    let both = "limits that are reported, without `enforce_limits`; thrusts without ends, as `every-wrench` says";
+    assert_eq!(change(&enforced).unwrap(), both);
 }
 
 #[test]

@@ -31,8 +31,6 @@ use super::held::Hold;
 const FREQUENCIES: (u32, f64) = (500, 1e-6);
 /// Parts of an interval that is searched for a peak, and how often it is.
 const REFINED: u32 = 40;
-/// Rates of modes that are looked at: the fastest, and so many halves of it.
-const HALVES: i32 = 6;
 /// Samples until a transient is taken for over, and what of it may be left.
 const TRANSIENT: (u32, f64) = (20_000, 1e-9);
 
@@ -80,20 +78,15 @@ impl Hold {
         self.swing(period_s, k, learnt * k)
     }
 
-    /// That of modes up to k = h λ, which learn at p.
+    /// That of modes up to k = h λ, which learn at p: slower ones, which learn as much more slowly, swing less, as a test shows.
     fn swing(self, period_s: f64, k: f64, p: f64) -> Swing {
         if self.is_ideal() {
             return Swing::NONE;
         }
-        let of = |halves: i32| {
-            let part = libm::ldexp(1.0, -halves);
-            let mode = self.mode(period_s, part * k, part * p);
-            let peak = mode.peak();
-            Swing { forced: peak * peak, started: mode.transient(), noise: mode.noise() }
-        };
-        // Of slow modes neither forces nor starts make more than without all this.
-        let least = Swing { noise: 0.0, ..Swing::NONE };
-        (0..=HALVES).map(of).fold(least, Swing::max)
+        let mode = self.mode(period_s, k, p);
+        let peak = mode.peak();
+        // However slow a mode is, a force that lasts and a start make one.
+        Swing { forced: (peak * peak).max(1.0), started: mode.transient().max(1.0), noise: mode.noise() }
     }
 
     fn mode(self, period_s: f64, k: f64, p: f64) -> Mode {
@@ -261,6 +254,28 @@ mod tests {
                     if followed.is_finite() && mode.next(state)[0].abs() < 1e6 {
                         assert!(followed <= 1.01 * most * driven, "{late} {cut_off_rad_s:?} {share} {learns} {period}");
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn prop_slower_modes_swing_less() {
+        for (late, cut_off_rad_s) in [(0.3, None), (1.0, None), (0.0, Some(15.0)), (0.9, Some(100.0)), (0.5, Some(3.0))]
+        {
+            let hold = Hold { delay_s: 0.01 * late, cut_off_rad_s };
+            for (share, learns) in [(0.1, 0.0), (0.5, 0.0), (0.9, 0.0), (0.1, 0.5), (0.4, 0.4)] {
+                let k = share * hold.largest_gain(0.01);
+                let p = learns * k / (0.5 + hold.lag(0.01));
+                let halved = |times: i32| hold.swing(0.01, libm::ldexp(k, -times), libm::ldexp(p, -times));
+                for times in 0..6 {
+                    let (fast, slow) = (halved(times), halved(times + 1));
+                    let is_less = |slow: f64, fast: f64| slow <= 1.001 * fast;
+                    let all = is_less(slow.forced, fast.forced) && is_less(slow.started, fast.started);
+                    assert!(
+                        all && is_less(slow.noise, fast.noise),
+                        "{late} {cut_off_rad_s:?} {share} {learns}: {slow:?} {fast:?}"
+                    );
                 }
             }
         }
