@@ -117,6 +117,7 @@ fn write(
         setup,
         outcome,
         verdicts,
+        practical: check::practical(setup),
         predicted_agreement,
         prediction: None,
         goal: scenario.goal.map(|goal| GoalOutcome { goal, met: goal.is_met(setup, outcome, metrics) }),

@@ -18,7 +18,7 @@ use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
 use forwardstep_sim::{
     AgentSetup, ChainModel, Ending, Exchange, Periods, SampledLoop, Setup, Signal, SpacecraftModel, ThrustKind,
-    sampled_loop, simulate,
+    VelocitySensor, sampled_loop, simulate,
 };
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -407,6 +407,50 @@ fn eq_the_multipliers_of_a_sampled_mass_are_those_of_its_recursion() {
             assert!(nearest < 1e-5, "{late} {k}: {mu} is not among {found:?}");
         }
     }
+}
+
+/// What a controller remembers of its last sample follows from its state: periods after each other, which one controller carries on, are what
+/// single ones are behind each other, each with a controller that is built anew.
+#[test]
+fn prop_a_map_of_several_periods_is_the_product_of_those_of_single_ones() {
+    let swing = |amplitude: f64| formula((Expression::variable(0) * 1.3).sin_of() * amplitude);
+    let attitude = || vec![swing(0.3), rest_at(0.1), swing(-0.2), rest_at(1.0)];
+    let flight =
+        tracking(vehicle(ThrustKind::Continuous, Floor::Stops(1.0)), vec![swing(0.4), rest_at(0.3), rest_at(1.0)]);
+    let cascade = cascade(Expression::variable(1), Expression::number(1.0), 1);
+    let kinds = [
+        ("an arm", tracking(arm(0, &[1.0, 2.0]), vec![swing(0.5), swing(0.3)])),
+        ("blind", tracking(blind_mass(1.0, 2.0), vec![swing(0.2)])),
+        ("a model", tracking(modelled_mass(1.0, 2.0), vec![swing(0.2)])),
+        ("a tip", tracking(planar_tip(), vec![swing(0.2), rest_at(1.0)])),
+        ("a chain", tracking(chain(&Expression::number(1.5), 1, true), vec![swing(0.2)])),
+        ("a cascade", tracking(cascade, vec![swing(0.2)])),
+        ("a spacecraft", tracking(spacecraft(), attitude())),
+        ("a filter", tracking(filtered_spacecraft(), attitude())),
+        ("a vehicle", flight),
+    ];
+    let ways = [(0.0, None), (0.4, None), (0.0, Some(8.0)), (0.4, Some(8.0))];
+    let (mut looked, mut moved) = (0, 0);
+    for ((name, setup), (late, filter_hz)) in kinds.iter().flat_map(|kind| ways.map(|way| (kind, way))) {
+        let mut setup = setup.clone().sampled(50.0);
+        let control = setup.control.as_mut().unwrap();
+        control.computation_delay_s = late / control.sample_hz;
+        if let Some(cut_off_hz) = filter_hz {
+            control.sensors.velocity = VelocitySensor::Filtered { cut_off_hz };
+        }
+        let map = |after: u32, over: u32| -> Option<nalgebra::DMatrix<f64>> {
+            let found = sampled_loop(&setup, 0, 0.0, Periods { begin_s: 0.3, after, over });
+            let SampledLoop { size, own, .. } = found.ok()??;
+            Some(nalgebra::DMatrix::from_row_slice(size, size, &own))
+        };
+        let Some(whole) = map(2, 4) else { continue };
+        let product = (2..6).filter_map(|after| map(after, 1)).reduce(|before, next| next * before).unwrap();
+        let apart = (&whole - &product).norm() / whole.norm();
+        assert!(apart < 1e-6, "{name}, {late} late, filtered at {filter_hz:?} Hz: {apart}");
+        looked += 1;
+        moved += usize::from((&whole - map(2, 1).unwrap().pow(4)).norm() / whole.norm() > 1e-5);
+    }
+    assert!(looked >= 24 && moved > 10, "{looked}, of which {moved} change along the way");
 }
 
 /// Whether it keeps near its target to the end; a run that takes many steps has long left it.

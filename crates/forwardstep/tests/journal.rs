@@ -69,7 +69,7 @@ fn has_journal(run: &mut Child, out: &Path) -> bool {
 fn recording(out: &Path) -> Recording {
     let run = SavedRun::open(out).unwrap();
     let verdicts = forwardstep::check::check(run.setup());
-    run.record(&verdicts, None, &[]).outcome.recording.clone()
+    run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording.clone()
 }
 
 /// That the rows of `part` are the first of `whole`, bit for bit; how many they are.

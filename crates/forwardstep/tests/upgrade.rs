@@ -96,7 +96,7 @@ fn an_upgraded_scenario_runs_to_the_same_bits() {
         let runs = [folder.path().join(name), copy].map(|path| SavedRun::open(&path).unwrap());
         let [new, then] = runs.each_ref().map(|run| {
             let report = forwardstep::check::check(run.setup());
-            run.record(&report, None, &[]).outcome.recording.clone()
+            run.record(&report, forwardstep_check::Practical::default(), None, &[]).outcome.recording.clone()
         });
         if name == "rotorcraft" {
             assert!(format!("{new:?}") == format!("{then:?}"), "{name}");

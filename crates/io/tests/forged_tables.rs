@@ -85,7 +85,7 @@ impl Forge {
             Ok(run) => {
                 let verdicts = forwardstep_check::check(run.setup());
                 let rows = self.recording.t_s.len();
-                let read = &run.record(&verdicts, None, &[]).outcome.recording;
+                let read = &run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording;
                 assert!(read.t_s.len() == rows && read.columns.iter().all(|column| column.values.len() == rows));
                 None
             }
@@ -110,7 +110,7 @@ fn tables_of_many_groups_come_back_bit_for_bit() {
     });
     let run = SavedRun::open(folder.path()).unwrap();
     let verdicts = forwardstep_check::check(run.setup());
-    assert_eq!(run.record(&verdicts, None, &[]).outcome.recording, written);
+    assert_eq!(run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording, written);
 }
 
 #[test]

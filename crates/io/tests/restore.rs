@@ -80,6 +80,7 @@ fn write_of(text: &str, folder: &Path, change: impl FnOnce(&Setup, &mut Outcome)
         setup: &scenario.setup,
         outcome: &outcome,
         verdicts: &forwardstep_check::check(&scenario.setup),
+        practical: forwardstep_check::practical(&scenario.setup),
         predicted_agreement: None,
         prediction: None,
         goal: None,
@@ -98,7 +99,7 @@ fn rebuild(folder: &Path) -> Result<(), RestoreError> {
     let run = SavedRun::open(folder)?;
     let verdicts = forwardstep_check::check(run.setup());
     let remarks = run.remarks(&verdicts, "0.1.0");
-    run.write_report(&run.record(&verdicts, None, &remarks))?;
+    run.write_report(&run.record(&verdicts, forwardstep_check::Practical::default(), None, &remarks))?;
     Ok(())
 }
 
@@ -131,7 +132,11 @@ fn a_leader_has_columns_of_its_own() {
         let back = SavedRun::open(folder.path()).unwrap();
         let verdicts = forwardstep_check::check(back.setup());
         assert_eq!(back.remarks(&verdicts, "0.1.0"), [], "{table}");
-        assert_eq!(back.record(&verdicts, None, &[]).outcome.recording, outcome.recording, "{table}");
+        assert_eq!(
+            back.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording,
+            outcome.recording,
+            "{table}"
+        );
         drop(back);
         let _ = fs::remove_file(folder.path().join("trajectory.parquet"));
     }
@@ -184,7 +189,7 @@ fn a_run_comes_back_as_it_was() {
         let run = SavedRun::open(folder.path()).unwrap();
         let verdicts = forwardstep_check::check(run.setup());
         assert_eq!(run.remarks(&verdicts, "0.1.0"), []);
-        let record = run.record(&verdicts, None, &[]);
+        let record = run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]);
         assert_eq!(record.outcome.recording, written.recording);
         assert_eq!((&record.outcome.ending, &record.outcome.statistics), (&written.ending, &written.statistics));
         assert_eq!((record.title, record.scenario_name, record.version), ("Two carts", "carts", "0.1.0"));
@@ -275,7 +280,10 @@ fn columns_may_stand_in_any_order_and_some_may_be_missing() {
     fs::write(&path, table.lines().map(reversed).collect::<String>()).unwrap();
     let run = SavedRun::open(folder.path()).unwrap();
     let verdicts = forwardstep_check::check(run.setup());
-    assert_eq!(run.record(&verdicts, None, &[]).outcome.recording, written.recording);
+    assert_eq!(
+        run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording,
+        written.recording
+    );
     drop(run);
     // A version that records more meets the tables of one that did not.
     let shorter = |line: &str| line.rsplit_once(',').unwrap().0.to_owned() + "\n";
@@ -283,7 +291,8 @@ fn columns_may_stand_in_any_order_and_some_may_be_missing() {
     let run = SavedRun::open(folder.path()).unwrap();
     let said: Vec<_> = run.remarks(&verdicts, "0.1.0").iter().map(ToString::to_string).collect();
     assert!(said.contains(&"the tables have no column `cart-2.dissipation`".to_owned()), "{said:?}");
-    let columns = run.record(&verdicts, None, &[]).outcome.recording.columns.len();
+    let columns =
+        run.record(&verdicts, forwardstep_check::Practical::default(), None, &[]).outcome.recording.columns.len();
     assert_eq!(columns, written.recording.columns.len() - 1);
 }
 

@@ -40,7 +40,7 @@ impl Promise {
 
     /// Its record, with these remarks.
     pub(crate) fn record<'a>(&'a self, run: &'a SavedRun, remarks: &[Remark]) -> RunRecord<'a> {
-        run.record(&self.report, self.value().map(<[f64]>::to_vec), remarks)
+        run.record(&self.report, self.practical.clone(), self.value().map(<[f64]>::to_vec), remarks)
     }
 }
 

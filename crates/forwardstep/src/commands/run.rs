@@ -251,6 +251,7 @@ fn record<'a>(
         setup: &scenario.setup,
         outcome,
         verdicts: &promise.report,
+        practical: promise.practical.clone(),
         predicted_agreement: promise.value().map(<[f64]>::to_vec),
         prediction: None,
         goal,

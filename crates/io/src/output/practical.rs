@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use forwardstep_check::{Along, LoadReached, MarginReached, PowerReached, Practical, Source, along, practical};
+use forwardstep_check::{Along, LoadReached, MarginReached, PowerReached, Practical, Source, along};
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::Recording;
 use schemars::JsonSchema;
@@ -37,13 +37,6 @@ pub struct PracticalVerdict {
     pub because: String,
     /// The numbers in it, by stable names that end in their units.
     pub numbers: BTreeMap<String, f64>,
-}
-
-impl PracticalVerdicts {
-    /// Those on a setup.
-    pub fn of(setup: &Setup) -> PracticalVerdicts {
-        PracticalVerdicts::from(&practical(setup))
-    }
 }
 
 impl From<&Practical> for PracticalVerdicts {

@@ -1,7 +1,7 @@
 //! Everything that is known about a finished run.
 
 use forwardstep_check::hypothesis::Subject;
-use forwardstep_check::{Answer, Footing, Ground, Hypothesis, Id, Report};
+use forwardstep_check::{Answer, Footing, Ground, Hypothesis, Id, Practical, Report};
 use forwardstep_sim::recording::{BreakdownCause, Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
 
@@ -33,6 +33,8 @@ pub struct RunRecord<'a> {
     pub outcome: &'a Outcome,
     /// What was promised before the run.
     pub verdicts: &'a Report,
+    /// What was said before the run of the loop as it is deployed.
+    pub practical: Practical,
     /// The value the agents are predicted to agree on, per axis, when a theorem or a certificate tells.
     pub predicted_agreement: Option<Vec<f64>>,
     /// What was predicted for s ≡ 0; `None` where nothing is, or it was interrupted.

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use forwardstep_check::Report;
+use forwardstep_check::{Practical, Report};
 use forwardstep_sim::recorded_columns;
 use forwardstep_sim::recording::{Ending, Outcome, Recording, Signal};
 use forwardstep_sim::setup::Setup;
@@ -121,6 +121,7 @@ impl SavedRun {
     pub fn record<'a>(
         &'a self,
         verdicts: &'a Report,
+        practical: Practical,
         predicted_agreement: Option<Vec<f64>>,
         remarks: &[Remark],
     ) -> RunRecord<'a> {
@@ -137,6 +138,7 @@ impl SavedRun {
             setup,
             outcome,
             verdicts,
+            practical,
             predicted_agreement,
             prediction: summary.prediction.clone(),
             goal,

@@ -245,7 +245,7 @@ impl Summary {
                 undecided: record.goal_word(outcome) == "undecided",
             }),
             verdicts: Verdicts::of(record.verdicts),
-            practical: Some(PracticalVerdicts::of(setup)),
+            practical: Some(PracticalVerdicts::from(&record.practical)),
             prediction: record.prediction.clone(),
             metrics,
             solver: Solver {

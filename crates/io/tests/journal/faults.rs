@@ -206,7 +206,7 @@ fn whatever_fails_the_rows_that_were_kept_are_found() {
                         let rows = same_rows(&run, &outcome, &carts);
                         assert!(rows >= kept, "{fault:?} at operation {left}: {rows} of {kept} rows");
                         // Somebody looks at it again on a disk that works, and then once more.
-                        let record = run.record(&carts.1, None, &[]);
+                        let record = run.record(&carts.1, forwardstep_check::Practical::default(), None, &[]);
                         run.write_report(&record).unwrap();
                         let again = SavedRun::open(&path).unwrap();
                         assert_eq!(same_rows(&again, &outcome, &carts), rows);
@@ -314,7 +314,8 @@ fn regress_a_disk_that_is_full_at_the_first_write_keeps_the_rows_it_took() {
     assert!(kept + left == 400_000 && (1..70_000).contains(&left), "{kept} + {left}");
     drop(run);
     let saved = SavedRun::open(&path).unwrap();
-    let rows = saved.record(&carts.1, None, &[]).outcome.recording.t_s.len() as u64;
+    let rows =
+        saved.record(&carts.1, forwardstep_check::Practical::default(), None, &[]).outcome.recording.t_s.len() as u64;
     assert!(rows * row_bytes > 300_000, "{rows} rows");
     assert!(!saved.remarks(&carts.1, "0.1.0").iter().any(|remark| matches!(remark, Remark::JournalDamaged { .. })));
     // Where the head alone has no room, there is nothing to keep.

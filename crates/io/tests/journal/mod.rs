@@ -5,7 +5,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use forwardstep_check::Report;
+use forwardstep_check::{Practical, Report};
 use forwardstep_sim::{
     Ending, Observers, Outcome, Recording, RowSink, Statistics, recorded_columns, simulate, simulate_with,
 };
@@ -113,7 +113,7 @@ fn first_rows(found: &ReadJournal, outcome: &Outcome) -> usize {
 }
 
 fn same_rows(run: &SavedRun, outcome: &Outcome, carts: &(Scenario, Report)) -> usize {
-    let record = run.record(&carts.1, None, &[]);
+    let record = run.record(&carts.1, Practical::default(), None, &[]);
     let found = &record.outcome.recording;
     let rows = found.t_s.len();
     assert_eq!(found.t_s, outcome.recording.t_s[..rows]);
@@ -266,7 +266,7 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     assert!(saved.goes_on());
     // Its page says so, stands beside what the run writes, and is in no other's way.
     fs::write(path.join(".report.html.1.partial"), "a writer that was killed").unwrap();
-    let (record, again) = (saved.record(&carts.1, None, &[]), Duration::from_millis(6500));
+    let (record, again) = (saved.record(&carts.1, Practical::default(), None, &[]), Duration::from_millis(6500));
     let page = saved.write_growing_page(&path, &record, again).unwrap();
     let page = fs::read_to_string(page).unwrap();
     assert!(page.contains("running: 0.500 s of 0.5 s"), "{page}");
@@ -290,7 +290,7 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     let saved = SavedRun::open(&path).unwrap();
     assert_eq!(saved.unfinished(), Some(&Ending::CutOff { t_s: 0.5 }));
     assert_eq!(saved.remarks(&carts.1, "0.1.0"), [Remark::FromJournal { rows: 11, cut_off: true }]);
-    let record = saved.record(&carts.1, None, &[]);
+    let record = saved.record(&carts.1, Practical::default(), None, &[]);
     let elsewhere = RunFolder::create(folder.path().join("elsewhere"), false).unwrap();
     saved.write_into(&elsewhere, &record).unwrap();
     assert!(path.join(JOURNAL).exists() && !path.join("summary.json").exists());
@@ -301,7 +301,7 @@ fn what_was_cut_off_is_said_and_becomes_a_whole_folder() {
     for path in [path, folder.path().join("elsewhere")] {
         let again = SavedRun::open(&path).unwrap();
         assert_eq!(same_rows(&again, &outcome, &carts), 11);
-        let record = again.record(&carts.1, None, &[]);
+        let record = again.record(&carts.1, Practical::default(), None, &[]);
         assert_eq!(record.outcome.ending, Ending::CutOff { t_s: 0.5 });
         let summary = fs::read_to_string(path.join("summary.json")).unwrap();
         assert!(summary.contains("Was cut off at t = 0.5 s"), "{summary}");
@@ -322,7 +322,7 @@ fn a_journal_with_damage_stays_where_it_is() {
     assert!(run.remarks(&carts.1, "0.1.0").contains(&Remark::JournalDamaged { bytes: bytes_left }));
     let rows = same_rows(&run, &outcome, &carts);
     assert!(rows < 11);
-    run.write_report(&run.record(&carts.1, None, &[])).unwrap();
+    run.write_report(&run.record(&carts.1, Practical::default(), None, &[])).unwrap();
     assert_eq!(fs::read(path.join(JOURNAL)).unwrap(), damaged);
     drop(run);
     // The summary that stands beside it now is the newer.
@@ -353,7 +353,7 @@ fn regress_files_of_others_beside_a_journal_are_kept() {
         fs::create_dir_all(file.parent().unwrap()).unwrap();
         fs::write(&file, "mine").unwrap();
         let run = SavedRun::look_with(path, &Kinds::shipped()).unwrap();
-        let reported = run.write_report(&run.record(&carts.1, None, &[])).map(|_| ());
+        let reported = run.write_report(&run.record(&carts.1, Practical::default(), None, &[])).map(|_| ());
         for refused in [reported, RunFolder::create(path, true).map(|_| ())] {
             assert!(matches!(&refused, Err(OutputError::Changed { path }) if *path == file), "{name}: {refused:?}");
         }
@@ -388,7 +388,7 @@ fn regress_files_that_an_interrupted_report_left_are_known_by_what_they_hold() {
     }
     let report = |path: &std::path::Path| {
         let run = SavedRun::look_with(path, &Kinds::shipped()).unwrap();
-        run.write_report(&run.record(&carts.1, None, &[])).map(|_| ())
+        run.write_report(&run.record(&carts.1, Practical::default(), None, &[])).map(|_| ())
     };
     report(&whole).unwrap();
     for left in ["scenario.toml", "trajectory.parquet", "plots/torques.svg"] {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use forwardstep_check::hypothesis::{GraphEvidence, LinkEvidence, Named, ReferenceEvidence, Subject};
-use forwardstep_check::{Hypothesis, Id, Report, Theorem};
+use forwardstep_check::{Hypothesis, Id, Report, Theorem, practical};
 use forwardstep_core::Gain;
 use forwardstep_core::robot::PointMass;
 use forwardstep_io::output::{GoalOutcome, RunRecord};
@@ -220,6 +220,7 @@ pub fn record<'a>(setup: &'a Setup, outcome: &'a Outcome, verdicts: &'a Report) 
         setup,
         outcome,
         verdicts,
+        practical: practical(setup),
         predicted_agreement: Some(
             (0..setup.agents.first().map_or(0, |a| a.robot.axes.len())).map(|axis| 0.3 * (axis + 1) as f64).collect(),
         ),
@@ -244,6 +245,7 @@ pub fn plain_record<'a>(scenario: &'a Scenario, outcome: &'a Outcome, verdicts: 
         setup: &scenario.setup,
         outcome,
         verdicts,
+        practical: practical(&scenario.setup),
         predicted_agreement: None,
         prediction: None,
         goal: None,

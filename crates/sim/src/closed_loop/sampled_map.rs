@@ -15,12 +15,12 @@ use super::valid::message_len;
 use crate::Signal;
 use crate::setup::{Actuators, Control, Failures, Sensors, Setup, Solver, VelocitySensor};
 
-/// Steps of the classical Runge–Kutta method before a late command, and after it: the first that agree with four times as many, else the
+/// Steps of the classical Runge–Kutta method before a late command, and after it: the first that agree with the next ones, else the
 /// most. A plant that is fast in itself needs more.
-const STEPS: [u32; 3] = [24, 96, 384];
+const STEPS: [u32; 5] = [2, 6, 24, 96, 384];
 /// How far a state is moved to try them, and how near they have to be, relative to its size.
 const TRIED: f64 = 1e-3;
-const AGREED: f64 = 1e-5;
+const AGREED: f64 = 1e-6;
 /// How far a state is moved to both sides, relative to its size.
 const APART: f64 = 1e-6;
 
@@ -137,12 +137,12 @@ impl Period<'_> {
         self.columns.start(&self.setup.agents, &mut x, &degree, &none).map_err(error)?;
         x.extend(self.filtered.iter().map(|k| x[*k]).collect::<Vec<_>>());
         // All agree with the agent as it starts.
-        let Passed { transmitted, .. } = self.pass(&x, false)?;
+        let Passed { transmitted, .. } = self.passes(&x, false, 1)?;
         let agreed: Vec<f64> = transmitted.iter().map(|entry| self.degree * entry).collect();
         self.heard = [agreed.clone(), agreed];
         let is_late = self.control.computation_delay_s > 0.0;
         if is_late {
-            let Passed { state, .. } = self.pass(&x, false)?;
+            let Passed { state, .. } = self.passes(&x, false, 1)?;
             x.extend(state.get(x.len()..).unwrap_or_default().to_vec());
         }
         self.choose_steps(&x, is_late)?;
@@ -195,15 +195,15 @@ impl Period<'_> {
         let moved: Vec<f64> = x.iter().map(|x| x + TRIED * (1.0 + x.abs())).collect();
         let mut with = |steps: u32| {
             self.steps = steps;
-            self.pass(&moved, is_late).map(|passed| passed.state)
+            self.passes(&moved, is_late, 1).map(|passed| passed.state)
         };
         let mut passed: Vec<f64> = with(STEPS[0])?;
-        for more in &STEPS[1..] {
+        for [steps, more] in STEPS.array_windows() {
             let finer = with(*more)?;
             // What is no number is near to nothing.
             let near = |(a, b): (&f64, &f64)| (a - b).abs() <= AGREED * (1.0 + b.abs());
             if passed.iter().zip(&finer).all(near) {
-                self.steps = more / 4;
+                self.steps = *steps;
                 return Ok(());
             }
             passed = finer;
@@ -211,59 +211,68 @@ impl Period<'_> {
         Ok(())
     }
 
-    /// The state so many periods after `x`, one at least, and what is told at the beginning of the first.
+    /// The state so many periods after `x`, one at least, and what is told at the beginning of the first. Where commands are late, `x` ends
+    /// with what the actuators held until then, and so does what comes after it; without that it is as if they had held what is commanded now.
     fn passes(&mut self, x: &[f64], is_late: bool, periods: u32) -> Result<Passed, SetupError> {
-        let begin_s = self.begin_s;
-        let mut passed = self.pass(x, is_late)?;
-        for _ in 1..periods {
+        let (begin_s, period_s) = (self.begin_s, 1.0 / self.control.sample_hz);
+        let mut passed = Passed { state: x.to_vec(), transmitted: self.heard[0].clone() };
+        let is_as_before = self.heard[0] == self.heard[1];
+        for period in 0..periods {
             // What has run away stays away.
-            if passed.state.iter().any(|x| !x.is_finite()) {
+            if period > 0 && passed.state.iter().any(|x| !x.is_finite()) {
                 break;
             }
-            self.begin_s += 1.0 / self.control.sample_hz;
-            passed.state = self.pass(&passed.state, is_late)?.state;
+            // The sample at the end of a period is that at the beginning of the next one, unless they hear different things.
+            if period == 0 {
+                self.begin(&mut passed.state, &mut passed.transmitted)?;
+            } else if !is_as_before {
+                self.begin(&mut passed.state, &mut self.heard[0].clone())?;
+            }
+            self.go_on(&mut passed.state, is_late);
+            self.begin_s += period_s;
         }
         self.begin_s = begin_s;
         Ok(passed)
     }
 
-    /// The state a period after `x`, and what is told at its beginning. Where commands are late, `x` ends with what the actuators held
-    /// until then, and so does what comes after it; without that it is as if they had held what is commanded now.
-    fn pass(&mut self, x: &[f64], is_late: bool) -> Result<Passed, SetupError> {
-        let period_s = 1.0 / self.control.sample_hz;
-        let late_s = self.control.computation_delay_s;
-        let states = self.columns.state_len();
-        let seen = states + self.filtered.len();
-        let (mut x, rest) = (x[..states].to_vec(), &x[states..]);
-        let (mut filter, before) = (rest[..seen - states].to_vec(), &rest[seen - states..]);
-        let recipes = self.columns.recipes(self.setup, &x)?;
+    /// Takes the sample at `x` with controllers that are built anew; `transmitted` is what is told.
+    fn begin(&mut self, x: &mut [f64], transmitted: &mut [f64]) -> Result<(), SetupError> {
+        let (x, rest) = x.split_at_mut(self.columns.state_len());
+        let recipes = self.columns.recipes(self.setup, x)?;
         let agent = &self.setup.agents[0].name;
         let controllers: Result<Vec<_>, _> = recipes.iter().map(|(_, recipe)| built(recipe, agent)).collect();
         self.columns.sample(&self.control, controllers?);
-        let mut transmitted = self.heard[0].clone();
-        self.take(self.begin_s, &mut x, &filter, 0, &mut transmitted);
+        self.take(self.begin_s, x, &rest[..self.filtered.len()], 0, transmitted);
+        Ok(())
+    }
+
+    /// From a sample that was taken to the next one, which is taken.
+    fn go_on(&mut self, state: &mut Vec<f64>, is_late: bool) {
+        let period_s = 1.0 / self.control.sample_hz;
+        let late_s = self.control.computation_delay_s;
+        let (x, rest) = state.split_at_mut(self.columns.state_len());
+        let (filter, before) = rest.split_at_mut(self.filtered.len());
         let mut command = Vec::new();
         self.columns.taken(&mut |digital| command.extend_from_slice(digital.taken(0, 0.0).command));
-        let begun = self.positions(&x);
+        let begun = self.positions(x);
         if is_late {
             self.columns.hold(before);
-            self.flow(&mut x, [self.begin_s, self.begin_s + late_s]);
+            self.flow(x, [self.begin_s, self.begin_s + late_s]);
         }
         self.columns.apply();
-        self.flow(&mut x, [self.begin_s + if is_late { late_s } else { 0.0 }, self.begin_s + period_s]);
+        self.flow(x, [self.begin_s + if is_late { late_s } else { 0.0 }, self.begin_s + period_s]);
         if let Some(quick) = self.quick {
-            let ended = self.positions(&x);
+            let ended = self.positions(x);
             for (f, (end, begin)) in filter.iter_mut().zip(ended.iter().zip(&begun)) {
                 *f += quick * ((end - begin) / period_s - *f);
             }
         }
-        let mut ignored = transmitted.clone();
-        self.take(self.begin_s + period_s, &mut x, &filter, 1, &mut ignored);
-        x.extend(filter);
-        if self.control.computation_delay_s > 0.0 {
-            x.extend(command);
+        let mut ignored = self.heard[1].clone();
+        self.take(self.begin_s + period_s, x, filter, 1, &mut ignored);
+        if late_s > 0.0 {
+            state.truncate(self.columns.state_len() + self.filtered.len());
+            state.extend(command);
         }
-        Ok(Passed { state: x, transmitted })
     }
 
     /// Those whose velocities are filtered.

@@ -153,11 +153,16 @@ impl Solo {
 
     /// The target, the plant's state and what sensors could see at `t_s`.
     fn look(&mut self, t_s: f64, x: &[f64]) -> Result<(), LengthError> {
-        let Layout { m, velocities, plant, .. } = self.layout;
-        self.now.t_s = t_s;
         if let Some(target) = &self.target {
             target.trajectory.jets(t_s, &mut self.now.jets);
         }
+        self.see(t_s, x)
+    }
+
+    /// The same without the target, unless the state is what is away from it.
+    fn see(&mut self, t_s: f64, x: &[f64]) -> Result<(), LengthError> {
+        let Layout { m, velocities, plant, .. } = self.layout;
+        self.now.t_s = t_s;
         self.now.state.copy_from_slice(&x[..plant]);
         if self.is_offset() {
             for (k, jet) in self.now.jets.jets().iter().enumerate().take(m) {
@@ -192,7 +197,12 @@ impl Solo {
     }
 
     fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
-        self.look(t_s, x)?;
+        // Between samples a target moves neither the plant nor what is held.
+        if self.digital.is_some() && !self.is_offset() && !self.layout.balance {
+            self.see(t_s, x)?;
+        } else {
+            self.look(t_s, x)?;
+        }
         self.control(x, inputs)?;
         let Layout { m, velocities, plant, .. } = self.layout;
         let end = self.layout.controller_end();

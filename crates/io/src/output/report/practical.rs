@@ -1,6 +1,6 @@
 //! Practical verdicts beside what was watched: what is said of the loop as it is deployed, not from the paper.
 
-use forwardstep_check::{PracticalAnswer, Source, practical as of_setup};
+use forwardstep_check::{PracticalAnswer, Source};
 use forwardstep_sim::Setup;
 use forwardstep_sim::recording::Signal;
 use maud::{Markup, html};
@@ -13,7 +13,7 @@ use super::super::text::{self, number, prose};
 
 /// Nothing where nothing is said.
 pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
-    let verdicts = of_setup(record.setup).findings;
+    let verdicts = &record.practical.findings;
     if verdicts.is_empty() && metrics.watched.is_none() && record.outcome.statistics.clipped.is_none() {
         return html! {};
     }
@@ -25,7 +25,7 @@ pub(crate) fn practical(record: &RunRecord<'_>, metrics: &Metrics) -> Markup {
                     h3 { "Before the run" " " span.by { (Source::Derived.words()) } }
                     @if verdicts.is_empty() { p.note { "Nothing is said." } }
                     ul.hypotheses {
-                        @for finding in &verdicts {
+                        @for finding in verdicts {
                             @let (class, sign) = style(finding.answer());
                             li class=(class) {
                                 span.sign aria-hidden="true" { (sign) }
