@@ -30,13 +30,19 @@ SCENARIOS = HERE.parent / "crates" / "io" / "scenarios"
 NAMES = ("theorem-1", "theorem-2", "theorem-3-a5-order-3", "theorem-3-24-order-4", "theorem-8", "first-order",
          "five-ships", "saturated-coupling", "formulas", "cut")
 # As many as a release needs, or a sample of them.
-PAIRS = 500 if "FORWARDSTEP_LONG" in os.environ else 24
+LONG = "FORWARDSTEP_LONG" in os.environ
+PAIRS = 500 if LONG else 24
 SEED = 11
 
 
 def place_of(name):
     own = HERE / "cases" / f"{name}.toml"
     return own if own.is_file() else SCENARIOS / f"{name}.toml"
+
+
+def often(count):
+    """So many draws before a release, and a quarter of them for every change."""
+    return range(count if LONG else count // 4)
 
 
 def written(value):
@@ -731,7 +737,7 @@ class FalseProofs(unittest.TestCase):
         """Ages of packets that are drawn here, exactly; and the best draw, which comes as close as can be."""
         draw, tight = random.Random(12), 0
         number_ = lambda most: checker.Fraction(draw.randrange(most + 1), 10)  # noqa: E731
-        for case in range(2000):
+        for case in often(2000):
             period, end_s = number_(60) + checker.Fraction(1, 10), number_(200) + checker.Fraction(1, 10)
             first, latency, jitter = min(number_(60), period), draw.choice((0, number_(30))), number_(20)
             enter = draw.choice((0, 0.3, 1))
@@ -757,7 +763,7 @@ class FalseProofs(unittest.TestCase):
             best = worst(lambda: 0 if enter == 1 else 0.999, lambda: 0)
             self.assertEqual(best, least, (body_, end_s))
             tight += best < end_s
-        self.assertGreater(tight, 1000)
+        self.assertGreater(tight, len(often(1000)))
 
     def test_enclosures_that_are_wider_than_what_is_stated_may_be_narrow_enough(self):
         motion = [("motion.sinusoids = [", 'motion.formulas = ["2*t/(1 + t)", "0"]\n#'), ("    { offset = 0.3,", "#"),
@@ -1403,7 +1409,7 @@ class FalseProofs(unittest.TestCase):
         """Of two rows |A|² = σ₁² + σ₂² and |det A| = σ₁ σ₂ give the smaller of the singular values."""
         draw = random.Random(5)
         shown = 0
-        for case in range(200):
+        for case in often(200):
             rows = [[draw.randint(-6, 6) for _ in range(2)] for _ in range(2)]
             norm, det = sum(x * x for row in rows for x in row), rows[0][0] * rows[1][1] - rows[0][1] * rows[1][0]
             least = math.sqrt(max(norm - math.sqrt(max(norm**2 - 4 * det**2, 0)), 0) / 2)
@@ -1413,7 +1419,7 @@ class FalseProofs(unittest.TestCase):
             # The determinant alone shows |det A|/|A|.
             if det: self.assertGreaterEqual(float(found), abs(det) / math.sqrt(norm) - 1e-9, rows)
             shown += found > 0
-        self.assertGreater(shown, 150)
+        self.assertGreater(shown, len(often(150)))
         # Without a bound of the entries by the discs alone, which show nothing where the diagonal is too small.
         self.assertEqual(checker.regular([["3 + x^2", "1"], ["-1", "2"]])[0], 1)
         self.assertLess(checker.regular([["1 + x^2", "2"], ["2", "2"]])[0], 0)
@@ -1631,7 +1637,7 @@ class FalseProofs(unittest.TestCase):
 
     def test_routh_tells_polynomials_by_their_roots(self):
         draw = random.Random(8)
-        for _ in range(300):
+        for _ in often(300):
             signs, p = [draw.choice((1, 1, 1, 1, -1)) for _ in range(draw.randrange(1, 6))], [checker.Fraction(1)]
             for sign in signs:
                 a, b = checker.Fraction(draw.randrange(1, 30), 7), checker.Fraction(draw.randrange(0, 40), 7)
@@ -2288,7 +2294,7 @@ class Enclosures(unittest.TestCase):
         draw = random.Random(3)
         ranges = {"sin": (-90, 90), "cos": (-90, 90), "exp": (-20, 20), "log": (1e-6, 1e6), "sqrt": (0, 1e6), "tanh": (-9, 9), "atan": (-50, 50)}
         for name, (low, high) in ranges.items():
-            for _ in range(100):
+            for _ in often(100):
                 x = checker.Fraction(draw.uniform(low, high))
                 found = checker.function(name, (x, x))
                 value = getattr(math, name)(float(x))
@@ -2359,7 +2365,7 @@ class Enclosures(unittest.TestCase):
         with decimal.localcontext(exact):
             ranges = {"sin": (-30, 30), "cos": (-30, 30), "exp": (-90, 90), "log": (1e-6, 1e6), "sqrt": (0, 1e6), "tanh": (-9, 9), "atan": (-50, 50)}
             for name, (low, high) in ranges.items():
-                for _ in range(60):
+                for _ in often(60):
                     x = checker.Fraction(draw.choice((draw.uniform(low, high), draw.uniform(0.4, 2.1), round(draw.uniform(1, 9)))))
                     a, b = (decimal.Decimal(end.numerator) / end.denominator for end in checker.function(name, (x, x)))
                     true = value(name, decimal.Decimal(x.numerator) / x.denominator)
@@ -2433,7 +2439,7 @@ class Enclosures(unittest.TestCase):
             return draw.choice((f"({a} + {b})", f"({a} - {b})", f"{a}*{b}", f"{a}*{b}", f"{a}/(1 + abs({b}))", f"abs({a})", f"min({a}, {b})",
                                 f"max({a}, {b})", f"tanh({a})", f"cos({a})", f"{a}/(1.5 + sin({b}))", f"cos(sin({a}))^-1", f"1/cos(tanh({a}))"))
 
-        for _ in range(150):
+        for _ in often(150):
             text = drawn(3)
             tree = checker.formula(text)
             value = lambda t, text=text: eval(text.replace("^", "**"), {"t": t, **vars(math)})  # noqa: E731
@@ -2449,7 +2455,7 @@ class Enclosures(unittest.TestCase):
             straight = checker.attempt(checker.straight, tree, piece)
             for t in [3 + k / 80 for k in range(21)] if straight else ():
                 self.assertTrue(straight[0] - room(value(t)) <= value(t) <= straight[1] + room(value(t)), f"{text} at {t}")
-        self.assertGreater(bounded, 60)
+        self.assertGreater(bounded, len(often(60)))
 
     def test_roots_are_bounded_by_their_squares(self):
         """From a time on; with the sign where the factors have one, and no value where one of them has none."""
@@ -2475,7 +2481,7 @@ class Enclosures(unittest.TestCase):
         """A polynomial in 1/t by its coefficients of Bernstein: 1 − u + u² stays positive from 1 s on."""
         self.assertEqual(checker.by_quotient(checker.formula("(t^2 - t + 1)/t^2"), checker.LATE), (checker.Fraction(1, 2), 1))
         draw = random.Random(5)
-        for _ in range(200):
+        for _ in often(200):
             p, end = [checker.Fraction(draw.randint(-9, 9), draw.randint(1, 4)) for _ in range(draw.randint(1, 7))], checker.Fraction(draw.randint(0, 6), 3)
             low, high = checker.held(p, end)
             values = [sum(c * (end * k / 40) ** n for n, c in enumerate(p)) for k in range(41)]
@@ -2553,7 +2559,7 @@ class Enclosures(unittest.TestCase):
         draw = random.Random(4)
         for text in ("sin(t)*cos(2*t) + t^3/9", "tanh(t - 1)/(2 + cos(t))", "exp(-t^2) + atan(3*t)", "sqrt(1 + t^2) - abs(t)", "max(t, 1)^1.5"):
             tree = checker.formula(text)
-            for _ in range(60):
+            for _ in often(60):
                 low = draw.uniform(-4, 4)
                 high = low + draw.uniform(0, 1.5)
                 found = checker.enclose(tree, (checker.Fraction(low), checker.Fraction(high)))

@@ -15,7 +15,7 @@ from checks import LONG, NO_BROWSER
 from pages import SCENARIOS
 
 BESIDE = [["layout.py", "whole"], ["layout.py", "cards"], ["stage.py"], ["follow.py"], ["hands.py"], ["compare.py"]]
-BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", *SCENARIOS[::4]]]
+BESIDE += [["pages.py", *SCENARIOS[::2]], ["pages.py", *SCENARIOS[1::2]]] if LONG else [["pages.py", SCENARIOS[0]]]
 ALONE = [["speed.py"]] if LONG else []
 
 

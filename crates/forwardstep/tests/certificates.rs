@@ -180,7 +180,7 @@ fn what_formulas_do_for_ever_is_shown_or_refuted_by_a_witness() {
         ("0.5 + sin(t/10)", "violated"),
         ("1 + sin(t/20)^3 + 0.1*cos(3*t)", "violated"),
     ];
-    for (weight, answer) in some(weights, 2) {
+    for (weight, answer) in some(weights, 3) {
         let scenario = masses(&format!("weight = \"{weight}\"\ndelay.constant_s = 0.1\n{RING}"));
         shown(judged(&scenario, "bounded-weights"), answer, weight);
     }
@@ -201,7 +201,7 @@ fn what_formulas_do_for_ever_is_shown_or_refuted_by_a_witness() {
         ("0.1 + 0.2*sin(t/10)", "violated"),
         ("0.5*abs(cos(t/40)) - 0.1", "violated"),
     ];
-    for (delay, answer) in some(delays, 2) {
+    for (delay, answer) in some(delays, 4) {
         let scenario = masses(&format!("delay.formula_s = \"{delay}\"\n{RING}"));
         shown(judged(&scenario, "bounded-delays"), answer, delay);
     }

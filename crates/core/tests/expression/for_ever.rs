@@ -134,7 +134,8 @@ fn claims_are_met(formula: &Expression, weights: &[f64; 5], found: &ForEver) -> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+    // Many more before a release.
+    #![proptest_config(ProptestConfig::with_cases(if std::env::var_os("FORWARDSTEP_LONG").is_some() { 2000 } else { 100 }))]
 
     #[test]
     fn prop_no_sampled_value_leaves_what_is_claimed_for_ever(formula in any_formula()) {

@@ -18,7 +18,7 @@ fn rows() -> Vec<Vec<String>> {
 fn val_the_rules_of_the_sampling_table_are_those_of_the_scenarios() {
     let rows = rows();
     assert_eq!(rows.len(), 23);
-    for row in some(&rows, 2) {
+    for row in some(&rows, 4) {
         let [name, late, velocity, rule, measured, ratio] = &row[..] else { panic!("{row:?}") };
         let deployment = Deployment {
             late: late.strip_suffix(" h").map(|late| late.parse().unwrap()),

@@ -6,6 +6,7 @@ use forwardstep::io::scenario::read_scenario;
 use forwardstep::sim::run;
 
 use super::head;
+use crate::support::some;
 
 /// The mean of Σ sᵀKs that is bounded before a run, and along it, and that of the run.
 fn powers(scenario: &str) -> [f64; 3] {
@@ -29,7 +30,7 @@ fn regress_bounds_of_power_know_of_starts_that_are_short_beside_the_run() {
                  exchange = \"position_velocity\"\n[law.known]\ndamping.gain = 5\n[network]\nweight = {weight}\nedges.ring.direction = \"both\"\n"
             )
     };
-    for (count, end_s, weight) in [(2, 600, 5), (2, 3000, 5), (16, 100, 110), (40, 100, 110)] {
+    for (count, end_s, weight) in some([(2, 600, 5), (2, 3000, 5), (16, 100, 110), (40, 100, 110)], 2) {
         let [before, along, seen] = powers(&masses(count, end_s, weight));
         assert!(seen <= before && seen <= along, "{count} over {end_s} s: {seen:e} of {before:e} and {along:e}");
     }

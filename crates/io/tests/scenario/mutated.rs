@@ -75,7 +75,7 @@ fn prop_every_prefix_gives_a_result() {
 fn prop_every_line_may_be_missing_or_doubled() {
     for text in texts() {
         let lines: Vec<&str> = text.lines().collect();
-        for k in some(0..lines.len(), 8) {
+        for k in some(0..lines.len(), 16) {
             survives(&[&lines[..k], &lines[k + 1..]].concat().join("\n"));
             survives(&[&lines[..=k], &lines[k..]].concat().join("\n"));
         }
