@@ -468,7 +468,7 @@ fn an_arm_that_its_motors_cannot_hold_is_told() {
     setup.agents[1].start.q = vec![0.2, 0.1];
     let (name, answer, because) = said(&setup).unwrap();
     assert_eq!((name, answer), ("static-load", "inadequate"));
-    assert!(because.contains(" of 10 (arm-2, shoulder)"), "{because}");
+    assert!(because.contains(" of 10 N m (arm-2, shoulder)"), "{because}");
     setup.agents[1].robot.axes[0].effort_limit = Some(1e3);
     assert_eq!(said(&setup).unwrap().1, "adequate");
     // Those of the actuators count where they are tighter.
@@ -478,11 +478,11 @@ fn an_arm_that_its_motors_cannot_hold_is_told() {
     setup = setup.sampled(500.0);
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![1e3, 0.5]);
     let load = load_of(&setup);
-    assert!(load.answer().words() == "inadequate" && load.because().contains(" of 0.5 (arm-"), "{load:?}");
+    assert!(load.answer().words() == "inadequate" && load.because().contains(" of 0.5 N m (arm-"), "{load:?}");
     // And where both limit one axis, the tighter of them.
     setup.control.as_mut().unwrap().actuators.torque_limit = Some(vec![3.0, 1e3]);
     let load = load_of(&setup);
-    assert!(load.because().contains(" of 3 (arm-2, shoulder)"), "{load:?}");
+    assert!(load.because().contains(" of 3 N m (arm-2, shoulder)"), "{load:?}");
 }
 
 /// It hangs at its start, and its target leads it through the horizontal, where its shoulder is loaded most.

@@ -55,7 +55,7 @@ fn every_claim_of_every_shipped_scenario_and_of_every_case_is_accepted() {
     let cases = fs::read_dir(root().join("checker/cases")).unwrap().map(|entry| entry.unwrap().path());
     let cases: Vec<PathBuf> = cases.filter(|path| path.extension().is_some_and(|kind| kind == "toml")).collect();
     assert!(cases.len() > 10, "{cases:?}");
-    for file in some(SHIPPED_SCENARIOS.iter().map(|scenario| file_of(scenario.name)).chain(cases), 3) {
+    for file in some(SHIPPED_SCENARIOS.iter().map(|scenario| file_of(scenario.name)).chain(cases), 5) {
         let scenario = file.file_stem().unwrap().to_str().unwrap();
         let found = checked(&certified(file.to_str().unwrap(), folder.path()), &file);
         for entry in found["entries"].as_array().unwrap() {
@@ -72,7 +72,7 @@ fn every_claim_of_every_shipped_scenario_and_of_every_case_is_accepted() {
         }
     }
     assert_eq!(unchecked, BTreeSet::<(String, String)>::new());
-    assert!(accepted > if is_long() { 250 } else { 80 }, "{accepted}");
+    assert!(accepted > if is_long() { 250 } else { 50 }, "{accepted}");
 }
 
 /// Three masses that agree; `network` is its table.

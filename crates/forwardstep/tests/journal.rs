@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Child, Command as Process, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::{folder, forwardstep, names, some, stderr};
+use crate::support::{folder, forwardstep, is_long, names, some, stderr};
 use forwardstep::io::output::SavedRun;
 use forwardstep::sim::Recording;
 use tempfile::TempDir;
@@ -93,7 +93,8 @@ fn a_run_that_was_killed_has_its_rows() {
     assert!(!names(&path("whole")).contains(&"rows.journal".to_owned()), "the tables are whole");
     let whole = recording(&path("whole"));
     let mut counts = Vec::new();
-    for (k, wait_ms) in [0, 30, 400, 1100, 1900].into_iter().enumerate() {
+    let waits_ms = [0, 30, 400, 1100, 1900].into_iter().enumerate();
+    for (k, wait_ms) in waits_ms.filter(|(k, _)| is_long() || ![2, 3].contains(k)) {
         let out = format!("killed-{k}");
         let mut run = start(&folder, &out);
         assert!(has_journal(&mut run, &path(&out)) || k > 1);
@@ -126,7 +127,7 @@ fn a_run_that_was_killed_has_its_rows() {
         }
     }
     assert!(counts[0] > 1, "{counts:?}");
-    assert!(counts[4] > counts[0], "a journal grows: {counts:?}");
+    assert!(counts.last() > counts.first(), "a journal grows: {counts:?}");
 }
 
 #[test]

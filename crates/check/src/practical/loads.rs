@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{Evaluator, RotorcraftModel, Setup};
+use forwardstep_sim::{Axis, AxisUnit, Evaluator, RotorcraftModel, Setup};
 
 use super::PracticalAnswer;
 use super::led::Led;
@@ -27,8 +27,10 @@ pub struct StaticLoad {
     pub axis: usize,
     /// The name of that.
     pub axis_name: String,
-    /// |g_j(q)|, N m or N.
+    /// |g_j(q)|.
     pub torque: f64,
+    /// In `N m` or `N`.
+    pub unit: &'static str,
     /// Its limit: of the actuators or, where it is tighter, of the robot.
     pub limit: f64,
     /// Postures that were looked at.
@@ -97,8 +99,10 @@ pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q
     let share = |(_, (torque, limit)): &(usize, (f64, f64))| torque / limit;
     let worst = limited.reduce(|one, other| if share(&other) > share(&one) { other } else { one });
     let (axis, (torque, limit)) = worst?;
-    let axis_name = own.robot.axes.get(axis)?.name.clone();
-    Some(StaticLoad { agent: Named::of(setup, agent), axis, axis_name, torque, limit, postures: 1, pushed: false })
+    let Axis { name, unit, .. } = own.robot.axes.get(axis)?;
+    let unit = if *unit == AxisUnit::Radian { "N m" } else { "N" };
+    let (agent, axis_name) = (Named::of(setup, agent), name.clone());
+    Some(StaticLoad { agent, axis, axis_name, torque, unit, limit, postures: 1, pushed: false })
 }
 
 fn worse(one: StaticLoad, other: StaticLoad) -> StaticLoad {
@@ -116,6 +120,7 @@ fn hovering(setup: &Setup) -> Option<StaticLoad> {
             axis: 0,
             axis_name: THRUST.to_owned(),
             torque,
+            unit: "N",
             limit: 4.0 * most,
             postures: 1,
             pushed: false,

@@ -78,7 +78,7 @@ fn too_slow(SamplingMargin { start, worst, held_by_references, .. }: &SamplingMa
 }
 
 fn standing(load: &StaticLoad) -> String {
-    let StaticLoad { agent, axis_name, torque, limit, postures, .. } = load;
+    let StaticLoad { agent, axis_name, torque, unit, limit, postures, .. } = load;
     let (torque, limit) = (rounded(*torque), rounded(*limit));
     let pushed = if load.pushed { "; what a push that does not end asks for is not counted" } else { "" };
     if load.is_thrust() {
@@ -90,7 +90,7 @@ fn standing(load: &StaticLoad) -> String {
         format!("over {postures} postures between the starts and on the way")
     };
     format!(
-        "the largest share of a torque limit {those}: |g| is {torque} of {limit} ({}, {axis_name}){pushed}",
+        "the largest share of a torque limit {those}: |g| is {torque} {unit} of {limit} {unit} ({}, {axis_name}){pushed}",
         agent.name
     )
 }

@@ -29,9 +29,9 @@ pub enum NoRepeat {
     /// A weight is a formula.
     #[error("a weight is a formula of the time, whose period is not looked for")]
     Weights,
-    /// A delay is drawn, logged, a formula, or jumps once.
-    #[error("a delay is drawn, logged, a formula or jumps once")]
-    Delays,
+    /// A delay of this kind, by its own words, does not, or nobody says that it does.
+    #[error("delays include {0}, of which no period is known")]
+    Delays(&'static str),
     /// Periods have no common multiple that is short enough.
     #[error("switching and delays have no common period of at most {MOST_ROUNDS} rounds")]
     NoMultiple,
@@ -58,7 +58,7 @@ impl Repeats {
         }
         for delay in network.used_delays().map(|index| &network.delays[index]) {
             if !delay.is_constant() {
-                periods.push(Number::written(period_of(delay).ok_or(NoRepeat::Delays)?));
+                periods.push(Number::written(period_of(delay).ok_or(NoRepeat::Delays(delay.words()))?));
             }
         }
         let Some(longest) = periods.iter().max() else { return Ok(Repeats::Always) };

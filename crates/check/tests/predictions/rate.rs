@@ -9,7 +9,7 @@ use forwardstep_check::prediction::{
 use forwardstep_check::{NoIdeal, NotFixed, course};
 use forwardstep_core::expression::Expression;
 use forwardstep_sim::coupling::Coupling;
-use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, SawTooth};
+use forwardstep_sim::delay::{Delay, Loss, PacketLink, PiecewiseConstant, RandomHold, SawTooth};
 use forwardstep_sim::formula::BoundedFormula;
 use forwardstep_sim::graph::Weight;
 use forwardstep_sim::reference::{PureIntegral, Tracking};
@@ -317,7 +317,10 @@ fn every_reason_for_no_rate_per_period_is_the_one_that_is_said() {
     };
     assert_eq!(said(&drawn), Some(NoRepeat::Graphs.into()));
     let jumps = Delay::new(PiecewiseConstant { times_s: vec![0.0, 1.0], values_s: vec![0.1, 0.2], period_s: None });
-    assert_eq!(said(&|setup| setup.network.delays[0] = jumps.clone()), Some(NoRepeat::Delays.into()));
+    for delay in [jumps, Delay::new(RandomHold::draw(1, (0, 1), [0.05, 0.4], [0.1, 0.8], 9.0).unwrap())] {
+        let none = Some(NoRepeat::Delays(delay.words()).into());
+        assert_eq!(said(&|setup| setup.network.delays[0] = delay.clone()), none);
+    }
     let stays = |setup: &mut Setup| setup.network.schedule = Schedule::fixed(vec![edge(0, 1, 1.0, 0)]);
     assert_eq!(said(&stays), Some(NoRepeat::NothingChanges.into()));
     let breathes = |setup: &mut Setup| {
@@ -375,7 +378,7 @@ fn a_schedule_that_never_joins_and_drawn_delays_have_no_agreement_and_no_rate() 
     let course = super::course::predicted(&lossy);
     assert!(course.is_reached() && course.within.unwrap().iter().all(|[low, high]| high - low < 0.1));
     assert_eq!(rate(&lossy), Err(NoRate::NotFixed(NotFixed::VaryingDelay)));
-    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoRepeat::Delays.into()));
+    assert_eq!(period_rate(&lossy, &mut go_on), Err(NoRepeat::Delays("packets").into()));
 }
 
 #[test]

@@ -181,7 +181,11 @@ edges.ring = {}
     assert!(said.contains("to change             not shown [desired-dynamics]"), "{said}");
     let page = fs::read_to_string(folder.path().join("own/report.html")).unwrap();
     // What is of no unit has none, and a balance that is far off does not hold to anything.
-    assert!(page.contains("driven apart: axis 1, ") && page.contains(" times 1 × 10⁻⁶, beside which V(0), "));
+    assert!(
+        page.contains("driven apart: axis 1, ")
+            && page.contains(" leaves V(0) by ")
+            && page.contains(", where V(0) is ")
+    );
     let figure = fs::read_to_string(folder.path().join("own/plots/positions.svg")).unwrap();
     assert!(figure.contains("Positions – Two agents that hear") && figure.contains('…'), "a long title is shortened");
 }

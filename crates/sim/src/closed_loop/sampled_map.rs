@@ -18,9 +18,12 @@ use crate::setup::{Actuators, Control, Failures, Sensors, Setup, Solver, Velocit
 /// Steps of the classical Runge–Kutta method before a late command, and after it: the first that agree with the next ones, else the
 /// most. A plant that is fast in itself needs more.
 const STEPS: [u32; 5] = [2, 6, 24, 96, 384];
-/// How far a state is moved to try them, and how near they have to be, relative to its size.
+/// How far a state is moved to try them, and how near they have to be, relative to its size: so near that they suffice where motion is faster by
+/// far.
 const TRIED: f64 = 1e-3;
-const AGREED: f64 = 1e-6;
+const AGREED: f64 = 1e-7;
+/// After how many periods they are tried again: on its way an agent comes to where it is faster.
+const STEADY: u32 = 32;
 /// How far a state is moved to both sides, relative to its size.
 const APART: f64 = 1e-6;
 
@@ -146,9 +149,13 @@ impl Period<'_> {
             x.extend(state.get(x.len()..).unwrap_or_default().to_vec());
         }
         self.choose_steps(&x, is_late)?;
-        if after > 0 {
-            x = self.passes(&x, is_late, after)?.state;
-            self.begin_s += f64::from(after) / self.control.sample_hz;
+        let mut left = after;
+        while left > 0 {
+            let some = left.min(STEADY);
+            x = self.passes(&x, is_late, some)?.state;
+            self.begin_s += f64::from(some) / self.control.sample_hz;
+            left -= some;
+            self.choose_steps(&x, is_late)?;
         }
         let (n, m) = (x.len(), transmitted.len());
         let [mut own, mut tells] = [vec![0.0; n * n], vec![0.0; m * n]];

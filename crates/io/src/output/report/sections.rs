@@ -10,7 +10,7 @@ use forwardstep_sim::setup::{Exchange, Method, RecordAt, Setup};
 use maud::{Markup, html};
 
 use super::super::ending::ending_sentence;
-use super::super::metrics::{BALANCE_FLOOR_J, Disagreement, Gap, Metrics, balance_whole, coarse_rows};
+use super::super::metrics::{BALANCE_FLOOR_J, BalanceResidual, Disagreement, Gap, Metrics, balance_whole, coarse_rows};
 use super::super::names;
 use super::super::record::RunRecord;
 use super::super::table::Table;
@@ -181,11 +181,9 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
         }))
         @if let Some(balance) = metrics.balance_residual {
             (fact("Balance", html! {
-                @if balance.relative > 1.0 && balance.relative.is_finite() {
-                    "V + ∫ dissipation leaves V(0) by " (number(balance.relative)) " times "
-                    (balanced(record, balance.agent)) " (worst: "
-                } @else if balance.relative.is_finite() {
-                    "V + ∫ dissipation = V(0) holds to " (number(balance.relative)) " of " (balanced(record, balance.agent)) " (worst: "
+                @if balance.relative.is_finite() {
+                    "V + ∫ dissipation " @if balance.relative > 1.0 { "leaves V(0) by " } @else { "= V(0) holds to " }
+                    (missed(record, balance)) " (worst: "
                 } @else { "V is no longer finite (" }
                 (names::agent_name(setup, balance.agent)) ", t = " (number(balance.t_s)) " s)"
                 small { (BALANCE_WORDS) }
@@ -194,19 +192,17 @@ fn happened(record: &RunRecord<'_>, metrics: &Metrics, goes_on: bool) -> Markup 
     }
 }
 
-/// What the residual of a balance is a part of.
-fn balanced(record: &RunRecord<'_>, agent: usize) -> String {
+/// By how much a balance misses: as a part of V(0), or as it is where that is small.
+fn missed(record: &RunRecord<'_>, BalanceResidual { agent, relative, .. }: BalanceResidual) -> String {
     let setup = record.setup;
     let whole = balance_whole(&Table::new(setup, &record.outcome.recording), agent).unwrap_or(0.0);
     let name = if setup.agents[agent].pushes.is_empty() { "V(0)" } else { "the largest V" };
-    match whole < BALANCE_FLOOR_J {
-        true => {
-            let unit = text::unit(&names::unit(setup, agent, Signal::Lyapunov, 0));
-            let sized = |value: f64| format!("{} {unit}", number(value)).trim_end().to_owned();
-            format!("{}, beside which {name}, {}, is small", sized(BALANCE_FLOOR_J), sized(whole))
-        }
-        false => name.to_owned(),
+    if whole < BALANCE_FLOOR_J {
+        let unit = text::unit(&names::unit(setup, agent, Signal::Lyapunov, 0));
+        let sized = |value: f64| format!("{} {unit}", number(value)).trim_end().to_owned();
+        return format!("{}, where {name} is {}", sized(relative * BALANCE_FLOOR_J), sized(whole));
     }
+    format!("{} {} {name}", number(relative), if relative > 1.0 { "times" } else { "of" })
 }
 
 /// The agent and the axis with the largest |s| at the last row, and its size; nothing where s is not recorded or not finite.
