@@ -13,6 +13,7 @@ use forwardstep_core::law::ParameterBounds;
 use forwardstep_core::plant::CascadeTerms;
 use forwardstep_core::robot::tree::JointKind::{Prismatic, Revolute};
 use forwardstep_core::robot::tree::{JointKind, Uncertain};
+use forwardstep_sim::drives::JointDrives;
 use forwardstep_sim::reference::Consensus;
 use forwardstep_sim::schedule::Schedule;
 use forwardstep_sim::trajectory::{Path, Trajectory};
@@ -406,6 +407,25 @@ fn eq_the_multipliers_of_a_sampled_mass_are_those_of_its_recursion() {
             let nearest = found.iter().map(|found| (found - mu).norm()).fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-5, "{late} {k}: {mu} is not among {found:?}");
         }
+    }
+}
+
+/// Between samples ṁv = τ − D v with τ = −K v as it was: v⁺ = (e^(−a) − K (1 − e^(−a))/D) v with a = D h/m. As many steps are taken as that needs.
+#[test]
+fn eq_the_multiplier_of_a_sampled_mass_with_damping_is_that_of_its_recursion() {
+    for (damping, period_s) in [(2.0, 0.3), (20.0, 0.1), (20.0, 0.4), (300.0, 0.1)] {
+        let mut setup = masses(Exchange::Position, 2, Schedule::fixed(Vec::new()), Vec::new());
+        setup.agents.truncate(1);
+        setup.network.agents = 1;
+        setup.agents[0].roots_per_s = vec![1e-7, 2e-7].into();
+        let drives = JointDrives { damping: Some(vec![damping; 2]), ..JointDrives::default() };
+        setup.agents[0].robot = setup.agents[0].robot.clone().with_drives(&drives).unwrap();
+        let (mass, gain) = (setup.agents[0].robot.theta[0], 5.0);
+        let fades = libm::exp(-damping * period_s / mass);
+        let mu = fades - gain * (1.0 - fades) / damping;
+        let found = multipliers(&setup.sampled(1.0 / period_s));
+        let nearest = found.iter().map(|found| (found - mu).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 2e-6, "{damping} at {period_s} s: {mu} is {nearest:e} from {found:?}");
     }
 }
 

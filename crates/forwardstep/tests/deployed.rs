@@ -183,6 +183,11 @@ fn regress_the_verdict_on_a_deployed_loop_is_that_of_its_run() {
         let bounds = verdicts.iter().any(|verdict| verdict["id"] == "tracking-power" && verdict["answer"] == "bound");
         assert!(!(bounds && answer == "inadequate"), "{name}: {verdicts:?}");
         let summary = summary_of_run(&folder);
+        assert_eq!(
+            summary["practical"]["verdicts"].as_array(),
+            Some(&verdicts),
+            "{name}: said before the run and kept"
+        );
         let last = summary["metrics"]["disagreement"]["measured"]["last"].as_f64();
         let is_away = summary["ending"]["kind"] == "broke_down" || last.is_none_or(|last| last > 1e3);
         assert_eq!(is_away, runs_away, "{name}: {} {last:?}", summary["ending"]);

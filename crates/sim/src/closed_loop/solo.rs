@@ -198,7 +198,7 @@ impl Solo {
 
     fn try_rates(&mut self, t_s: f64, x: &[f64], inputs: Inputs<'_>, dx: &mut [f64]) -> Result<(), LengthError> {
         // Between samples a target moves neither the plant nor what is held.
-        if self.digital.is_some() && !self.is_offset() && !self.layout.balance {
+        if self.digital.is_some() && !self.is_offset() {
             self.see(t_s, x)?;
         } else {
             self.look(t_s, x)?;
