@@ -614,15 +614,6 @@ class Tampering(unittest.TestCase):
         self.assertGreater(min(counts.values()), PAIRS // 5, counts)
 
 
-def load_tests(loader, tests, pattern):
-    """All of them before a release; for every change those of the checker's tools, and every second one of its guards."""
-    suite = unittest.TestSuite()
-    for case in (Enclosures, Hostile, Tampering, FalseProofs):
-        names = loader.getTestCaseNames(case)
-        suite.addTests(case(name) for name in (names if LONG or case is not FalseProofs else names[::2]))
-    return suite
-
-
 class FalseProofs(unittest.TestCase):
     """For each guard of the checker a pair that only this guard rejects, at the boundary where there is one."""
 

@@ -1,8 +1,7 @@
 //! What a derivation rests on in a scenario: the hypotheses that it lacks, and what would break the others.
 
-use forwardstep_core::robot::{PointMass, Ship};
+use forwardstep_sim::Setup;
 use forwardstep_sim::graph::needed_edges;
-use forwardstep_sim::{AgentSetup, Setup};
 
 use crate::hypothesis::Id;
 use crate::report::Report;
@@ -14,11 +13,6 @@ const OWN_DELAYS: &str = "a delay that grows for ever, such as T = t, or a link 
 /// Nor how fast graphs may take turns.
 const OWN_SWITCHES: &str = "switches that follow each other ever faster, without a shortest phase; with dynamics of your own graphs that take turns \
                             can break agreement too, and nothing here says how long each has to stay";
-
-/// What a body by itself has no joint for.
-const OWN_INERTIA: &str = "a body without mass or inertia, of which M(q) is singular";
-const OWN_DYNAMICS: &str =
-    "nothing in a body by itself: it takes a robot with a sliding joint askew to the axes that carry it";
 
 /// What is said of one hypothesis.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,8 +36,6 @@ impl Footing {
     /// By what `report` says of `setup`.
     pub fn of(setup: &Setup, report: &Report) -> Footing {
         let mut footing = Footing::default();
-        let is_body = |agent: &AgentSetup| agent.robot.kind.is::<PointMass>() || agent.robot.kind.is::<Ship>();
-        let are_bodies = setup.agents.iter().all(is_body);
         let is_own = matches!(report.theorem, Theorem::Desired | Theorem::Declared(_));
         for hypothesis in &report.hypotheses {
             let (id, answer) = (hypothesis.id, hypothesis.answer());
@@ -55,8 +47,6 @@ impl Footing {
                     Id::SpanningTree | Id::LeaderReachesAll => format!("{}; {}", id.broken_by(), links(setup)),
                     Id::BoundedDelays if is_own => OWN_DELAYS.to_owned(),
                     Id::DwellTime if is_own => OWN_SWITCHES.to_owned(),
-                    Id::UniformInertia if are_bodies => OWN_INERTIA.to_owned(),
-                    Id::BoundedDynamics if are_bodies => OWN_DYNAMICS.to_owned(),
                     _ => id.broken_by().to_owned(),
                 };
                 footing.breaks.push(Ground { id, words });

@@ -12,6 +12,7 @@ mod links;
 mod network;
 mod null_vectors;
 mod outside;
+mod periods;
 mod predictions;
 mod pushes;
 mod robots;

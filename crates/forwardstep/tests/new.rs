@@ -107,7 +107,7 @@ fn options_are_written_down_and_the_scenario_runs() {
         &["--robot", "strict-feedback", "--graph", "star"],
     ];
     // The fourth is looked at below.
-    for (k, options) in some(cases.iter().enumerate().skip(usize::from(!is_long()) * 3), 6) {
+    for (k, options) in cases.iter().enumerate().filter(|(k, _)| is_long() || [3, 9].contains(k)) {
         let file = format!("case-{k}.toml");
         let mut arguments = vec!["new", &file];
         arguments.extend(*options);

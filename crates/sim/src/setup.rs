@@ -247,6 +247,17 @@ pub enum AxisUnit {
     Own,
 }
 
+impl AxisUnit {
+    /// The unit of what moves an axis: a torque or a force.
+    pub fn effort(self) -> &'static str {
+        match self {
+            AxisUnit::Radian | AxisUnit::One => "N m",
+            AxisUnit::Metre => "N",
+            AxisUnit::Own => "1",
+        }
+    }
+}
+
 /// Initial values of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {

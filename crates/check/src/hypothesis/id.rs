@@ -119,10 +119,10 @@ table! {
     // Robots.
     UniformInertia, "uniform-inertia", "Property 1", Source::Paper,
         "the inertia matrix M(q) is symmetric and uniformly positive definite",
-        "a moving link without mass or inertia, with which M(q) becomes singular in some posture";
+        "a robot, or a moving link of one, without mass or inertia: M(q) then becomes singular in some posture";
     BoundedDynamics, "bounded-dynamics", "proofs of Theorems 1, 6 and 8", Source::Paper,
         "C(q, q̇) and g(q) are bounded independent of q",
-        "a sliding joint askew to the axes that carry it: C(q, q̇) and g(q) can then grow with its travel, and that s vanishes is not shown";
+        "a robot with a sliding joint askew to the axes that carry it: C(q, q̇) and g(q) can then grow with its travel, and that s vanishes is not shown";
 
     // The loop around a law.
     PositiveGains, "positive-gains", "(6), (7)", Source::Paper,

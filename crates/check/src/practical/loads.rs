@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 
 use forwardstep_core::robot::TwoVelocity;
-use forwardstep_sim::{Axis, AxisUnit, Evaluator, RotorcraftModel, Setup};
+use forwardstep_sim::{Axis, Evaluator, RotorcraftModel, Setup};
 
 use super::PracticalAnswer;
 use super::led::Led;
@@ -100,8 +100,7 @@ pub(super) fn load(setup: &Setup, agent: usize, evaluator: &mut dyn Evaluator, q
     let worst = limited.reduce(|one, other| if share(&other) > share(&one) { other } else { one });
     let (axis, (torque, limit)) = worst?;
     let Axis { name, unit, .. } = own.robot.axes.get(axis)?;
-    let unit = if *unit == AxisUnit::Radian { "N m" } else { "N" };
-    let (agent, axis_name) = (Named::of(setup, agent), name.clone());
+    let (agent, axis_name, unit) = (Named::of(setup, agent), name.clone(), unit.effort());
     Some(StaticLoad { agent, axis, axis_name, torque, unit, limit, postures: 1, pushed: false })
 }
 

@@ -29,7 +29,7 @@ pub enum NoRepeat {
     /// A weight is a formula.
     #[error("a weight is a formula of the time, whose period is not looked for")]
     Weights,
-    /// A delay of this kind, by its own words, does not, or nobody says that it does.
+    /// A delay of this kind, by its own words: no period of it is known.
     #[error("delays include {0}, of which no period is known")]
     Delays(&'static str),
     /// Periods have no common multiple that is short enough.

@@ -66,11 +66,10 @@ impl RobotDescription {
         let losses = robot.robot.damping().into_iter().zip(&robot.coulomb);
         let kinds = robot.kinds.iter().zip(&robot.robot.axes).zip(losses);
         let joints = kinds.map(|((kind, axis), (damping, friction))| {
-            let (unit, effort_unit) = match axis.unit {
-                AxisUnit::Radian => ("rad", "N m"),
-                AxisUnit::Metre => ("m", "N"),
-                AxisUnit::One => ("1", "N m"),
-                AxisUnit::Own => ("1", "1"),
+            let unit = match axis.unit {
+                AxisUnit::Radian => "rad",
+                AxisUnit::Metre => "m",
+                AxisUnit::One | AxisUnit::Own => "1",
             };
             JointDescription {
                 name: axis.name.clone(),
@@ -80,7 +79,7 @@ impl RobotDescription {
                     MotionKind::Prismatic => "prismatic",
                 },
                 unit,
-                effort_unit,
+                effort_unit: axis.unit.effort(),
                 position_limits: axis.position_limits,
                 velocity_limit: axis.velocity_limit,
                 effort_limit: axis.effort_limit,
