@@ -42,7 +42,7 @@ fn eq_the_multipliers_of_a_sampled_mass_are_those_of_its_recursion() {
     }
 }
 
-/// A mass under K = 5, with these drives, so slow a reference that z does not count, and its mass.
+/// A mass at rest under K = 5, with these drives, so slow a reference that z does not count, and its mass.
 fn held_mass(drives: &JointDrives) -> (Setup, f64) {
     let mut setup = masses(Exchange::Position, 2, Schedule::fixed(Vec::new()), Vec::new());
     setup.agents.truncate(1);
@@ -50,7 +50,7 @@ fn held_mass(drives: &JointDrives) -> (Setup, f64) {
     let agent = &mut setup.agents[0];
     agent.roots_per_s = vec![1e-7, 2e-7].into();
     agent.robot = agent.robot.clone().with_drives(drives).unwrap();
-    agent.start.reference = vec![vec![0.0; 2]; 2];
+    (agent.start.dq, agent.start.reference) = (vec![0.0; 2], vec![vec![0.0; 2]; 2]);
     let mass = agent.robot.theta[0];
     (setup, mass)
 }

@@ -188,6 +188,10 @@ fn regress_the_verdict_on_a_deployed_loop_is_that_of_its_run() {
             Some(&verdicts),
             "{name}: said before the run and kept"
         );
+        let page = fs::read_to_string(folder.path().join("run/report.html")).unwrap();
+        for id in verdicts.iter().map(|verdict| verdict["id"].as_str().unwrap()) {
+            assert!(page.contains(&format!("<code>{id}</code>")), "{name}: the page keeps {id}");
+        }
         let last = summary["metrics"]["disagreement"]["measured"]["last"].as_f64();
         let is_away = summary["ending"]["kind"] == "broke_down" || last.is_none_or(|last| last > 1e3);
         assert_eq!(is_away, runs_away, "{name}: {} {last:?}", summary["ending"]);

@@ -369,3 +369,24 @@ fn regress_agreement_that_is_still_on_its_way_is_told_from_the_predicted_one() {
         assert_eq!(reached.ends_with(way), is_on_its_way, "{reached}");
     }
 }
+
+/// Where V(0) is next to nothing, a part of it says nothing: what the balance misses is told in joules.
+#[test]
+fn regress_a_balance_of_next_to_nothing_is_told_as_it_is() {
+    let folder = folder();
+    let text = "format = 2\ntime.end_s = 5\n[[agents]]\nname = \"mass\"\ncount = 2\nrobot.point_mass = { dimension = 1, mass_kg = 2 }\n\
+                start.position_m = [[0.0], [1.0]]\nstart.reference.z = [[1e-5], [0.0]]\n[reference.consensus]\nroots_per_s = [1, 2]\n\
+                exchange = \"position_velocity\"\n[law.known]\ndamping.gain = 5\n[network]\nedges.ring = {}\n";
+    fs::write(folder.path().join("own.toml"), text).unwrap();
+    forwardstep(&folder, &["run", "own.toml", "--out", "own"]);
+    let summary = fs::read_to_string(folder.path().join("own/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let part = summary["metrics"]["balance_residual"]["relative"].as_f64().unwrap();
+    let power = (part * 1e-6).log10().floor().to_string();
+    let power =
+        power.chars().map(|digit| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit.to_digit(10).map_or(0, |n| n as usize + 1)).unwrap());
+    let page = fs::read_to_string(folder.path().join("own/report.html")).unwrap();
+    let said = page.split("(0) holds to ").nth(1).unwrap().split(" (worst").next().unwrap();
+    let missed = format!(" × 10{} J, where V(0) is 1 × 10⁻¹⁰ J", power.collect::<String>());
+    assert!(said.ends_with(&missed), "{said}, and not {missed}");
+}
